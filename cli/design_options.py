@@ -5,12 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
-
 from raycaster.configuration import OPTIONS
 from raycaster.options import CommandParser, shown_default
-from raycaster.output import Console
+from raycaster.output import Console, Table
 
 
 def command_parser() -> CommandParser:
@@ -21,7 +18,7 @@ def command_parser() -> CommandParser:
 def main(argv: Sequence[str] | None = None) -> None:
     """Run the command."""
     command_parser().parse_args(argv)
-    table = Table("option", "meaning", "default", box=SIMPLE_HEAD, pad_edge=False)
+    table = Table("option", "meaning", "default", texts=("meaning", "default"))
     for name in OPTIONS:
         table.add_row("--" + name.replace("_", "-"), OPTIONS[name].description, shown_default(OPTIONS[name]))
     Console().print(table)

@@ -5,11 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
-
 from raycaster.options import CommandParser
-from raycaster.output import Console
+from raycaster.output import Console, Table
 from raycaster.scene import load_scene, packaged_scenes
 
 
@@ -21,10 +18,8 @@ def command_parser() -> CommandParser:
 def main(argv: Sequence[str] | None = None) -> None:
     """Run the command."""
     command_parser().parse_args(argv)
-    table = Table(box=SIMPLE_HEAD, pad_edge=False)
-    for heading in ("scene", "title", "rows", "reflections", "rectangles"):
-        table.add_column(heading, justify="left" if heading in ("scene", "title") else "right")
+    table = Table("scene", "title", "rows", "reflections", "rectangles", texts=("title",))
     for name, path in packaged_scenes().items():
         scene = load_scene(path)
-        table.add_row(name, scene.title, str(scene.rows), str(scene.reflections), str(len(scene.rect)))
+        table.add_row(name, scene.title, scene.rows, scene.reflections, len(scene.rect))
     Console().print(table)

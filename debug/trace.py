@@ -3,12 +3,9 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from fractions import Fraction
 
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
 from rich.text import Text
 
 from raycaster.configuration import CHANNEL_BITS
@@ -19,10 +16,9 @@ from raycaster.debug.waves import Waves
 from raycaster.design import design_for
 from raycaster.errors import UserError
 from raycaster.options import CommandParser, given_options
-from raycaster.output import Console, printable
+from raycaster.output import Console, Table, printable
 from raycaster.sim.simulator import SimulationError
 
-LOG_COLUMNS = 140
 PIXEL_EVENTS = ("done", "shown")
 WRONG = "bold red"
 ERROR_DIGITS = 3
@@ -81,19 +77,11 @@ def _is_line(reading: Reading) -> bool:
     return reading.place.rectangle is None or not reading.probe.shown
 
 
-def _table() -> Table:
-    return Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
-
-
 def _others(ray: Ray, readings: Sequence[Reading], first: Reading | None) -> Table:
     """Make the table of readings that take a line each."""
-    table = _table()
-    table.add_column("", no_wrap=True)
     exactly = any(reading.probe.true for reading in readings)
-    for heading in ("golden", "hardware", *(("exact", "error") if exactly else ())):
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("ns", justify="right", no_wrap=True)
-    table.add_column("module", no_wrap=True)
+    values = "golden", "hardware", *(("exact", "error") if exactly else ())
+    table = Table("", *values, "ns", "module", texts=("module",))
     for reading in readings:
         probe = reading.probe
         if not probe.shown and reading.wrong is None:
@@ -118,11 +106,7 @@ def _rectangles(ray: Ray, bounce: int, readings: Sequence[Reading], first: Readi
     for reading in readings:
         probes[reading.probe.quantity] = reading.probe
         by_place[reading.place.rectangle, reading.probe.quantity] = reading
-    table = _table()
-    table.add_column("rectangle", no_wrap=True)
-    table.add_column("", no_wrap=True)
-    for probe in probes.values():
-        table.add_column(_named(probe), justify="right", no_wrap=True)
+    table = Table("rectangle", "", *map(_named, probes.values()), texts=("",))
     for rectangle in range(len(ray.rectangles)):
         cells = [by_place.get((rectangle, quantity)) for quantity in probes]
         name = _label(ray, rectangle)
@@ -217,7 +201,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     if arguments.pixel is None:
         raise UserError("pixel: expected a ray's column and row, as in PIXEL=160,120, got none")
     column, row = pixel_place(arguments.pixel)
-    console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
+    console = Console()
     design = design_for(arguments.scene, given_options(arguments))
     ray = Ray(design, row, column)
     target = arguments.build / "trace" / design.name

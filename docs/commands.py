@@ -10,12 +10,10 @@ import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from rich.table import Table
-
 from raycaster.docs.pages import PAGES, ROOT, need_clone
 from raycaster.errors import UserError
 from raycaster.options import FROM_MAKE, CommandParser
-from raycaster.output import Console
+from raycaster.output import Console, Table
 from raycaster.tools import find_program
 
 LEFT_OUT = {
@@ -103,7 +101,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         raise UserError(f"only: no command in the manual contains {arguments.only!r}")
     arguments.output.mkdir(parents=True, exist_ok=True)
     console, failed = Console(), 0
-    table = Table("command", "seconds", "exit code", "log")
+    table = Table("command", "seconds", "exit code", "log", texts=("log",))
     for number, command in enumerate(chosen):
         if reason := left_out(command):
             table.add_row(command, "", "", f"left out: {reason}")
@@ -112,6 +110,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         with console.waiting(f"{number + 1} of {len(chosen)}: {command}"):
             code, seconds = run(command, log)
         failed += code != 0
-        table.add_row(command, f"{seconds:.0f}", str(code), str(log), style="red" if code else None)
+        table.add_row(command, f"{seconds:.0f}", code, log, style="red" if code else None)
     console.print(table)
     return int(failed > 0)

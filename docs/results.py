@@ -10,9 +10,6 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
-
 from raycaster.configuration import configure
 from raycaster.docs import engine_figures, scaling
 from raycaster.docs.facts import facts
@@ -21,11 +18,9 @@ from raycaster.docs.proofs import proofs
 from raycaster.docs.tables import listed, outcomes, tables
 from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, Provenance, add_keep_option, keep, kept_outcome
-from raycaster.output import Console, printable
+from raycaster.output import Console, Table, printable
 from raycaster.report import beside
 from raycaster.scene import packaged_scenes
-
-LOG_COLUMNS = 150
 
 
 def _measure_engines(arguments: argparse.Namespace, console: Console) -> int:
@@ -55,7 +50,7 @@ def _measure_beside(arguments: argparse.Namespace, console: Console) -> int:
 
 def _show_stale(console: Console) -> None:
     """List the stored figures that no longer hold, with the command that measures each again."""
-    shown = Table("results/", "changed since", "measured again by", box=SIMPLE_HEAD, pad_edge=False)
+    shown = Table("results/", "changed since", "measured again by", texts=("changed since", "measured again by"))
     stale = [one for one in outcomes().values() if one.changed]
     for one in stale:
         shown.add_row(one.name, listed(one.changed).replace("`", ""), f"{one.command} --keep results/{one.name}.json")
@@ -97,7 +92,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     need_clone()
     console = Console()
     if arguments.stale:
-        _show_stale(Console(width=None if console.is_terminal else LOG_COLUMNS))
+        _show_stale(console)
         return 0
     code = 0
     if not arguments.render:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -22,7 +21,7 @@ from raycaster.engines import ENGINES
 from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, measure
 from raycaster.golden.engines import model_of
 from raycaster.golden.picture import count_wrong, shown
-from raycaster.jobs import run_jobs
+from raycaster.jobs import run_jobs, threads
 from raycaster.outcomes import Outcome, Published, table
 from raycaster.output import Console
 from raycaster.play.machine import Machine, build_machine
@@ -117,7 +116,7 @@ def measure_scaling(output: Path, build: Path, console: Console) -> list[dict[st
                 "clock_mhz": config.screen_geometry.clock_hz / 1e6,
             }  # fmt: skip
     count = partial(_count, output=output)
-    areas = run_jobs("counting", count, list(wanted.values()), partial(ThreadPoolExecutor, JOBS), console)
+    areas = run_jobs("counting", count, list(wanted.values()), threads(JOBS), console)
     cells = {name: vars(area) for name, area in zip(wanted, areas, strict=True)}
     times = {
         name: frame_time(config, build)

@@ -10,12 +10,10 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from fnmatch import fnmatch
-from functools import cache, partial
+from functools import cache
 from importlib.metadata import distributions
-from multiprocessing import get_context
 
 from filelock import FileLock
 
@@ -28,7 +26,7 @@ from raycaster.digests import code_digest
 from raycaster.docs import engine_figures, scaling
 from raycaster.errors import UserError
 from raycaster.fpga import area, bitstream, fit, tiny_tapeout
-from raycaster.jobs import run_jobs
+from raycaster.jobs import processes, run_jobs
 from raycaster.outcomes import RESULTS, Check, Digests, Outcome, Published, kept_outcome, table
 from raycaster.output import Console
 from raycaster.play import game
@@ -37,7 +35,6 @@ from raycaster.report import beside
 from raycaster.sim import scenes
 from raycaster.verif import everything
 from raycaster.verif.coverage import measure as coverage
-from raycaster.verif.exhaustive import run as exhaustive
 from raycaster.verif.formal import prove
 from raycaster.verif.mutation import mutate
 from raycaster.verif.soak import soak
@@ -46,7 +43,7 @@ from raycaster.web import site
 
 DECIDING = (
     "hdl", "rtl", "raycaster", "convert", "golden", "fit", "fpga", "sim", "play", "web", "sw", "report", "scenes",
-    *(f"verif/{name}" for name in ("coverage", "exhaustive", "formal", "mutation", "soak", "upsets")),
+    *(f"verif/{name}" for name in ("coverage", "formal", "mutation", "soak", "upsets")),
     "verif/random_scenes.py", "docs/engine_figures.py", "docs/scaling.py",
 )  # fmt: skip
 """Sources on which any digest may depend: digests are only computed again if one of them changes."""
@@ -68,7 +65,7 @@ def _buses(kept: Outcome) -> str:
 
 
 CHECKS: Sequence[Check] = (
-    *scenes.CHECKS, *soak.CHECKS, *game.CHECKS, *exhaustive.CHECKS, *report.CHECKS, *prove.CHECKS, *mutate.CHECKS,
+    *scenes.CHECKS, *soak.CHECKS, *game.CHECKS, *report.CHECKS, *prove.CHECKS, *mutate.CHECKS,
     *upsets.CHECKS, *coverage.CHECKS, *everything.CHECKS,
 )  # fmt: skip
 """Rows of the table of long-running checks."""
@@ -148,7 +145,7 @@ def _current(commands: Sequence[str]) -> Mapping[str, Digests | str]:
     store, console = ROOT / "build" / "provenance.json", Console(stderr=True)
     state, hardware = _state(DECIDING), _state(HARDWARE)
     # New processes, because MyHDL searches all loaded modules repeatedly, and a test has loaded many.
-    pool = partial(ProcessPoolExecutor, JOBS, mp_context=get_context("spawn"))
+    pool = processes(JOBS, spawned=True)
     store.parent.mkdir(exist_ok=True)
     with FileLock(store.with_suffix(".lock")):
         stored = json.loads(store.read_text()) if store.exists() else {}

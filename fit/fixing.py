@@ -10,8 +10,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rich.table import Table
-
 from raycaster.configuration import COORDINATE_BITS, LOOKS, MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
@@ -19,7 +17,7 @@ from raycaster.fit.choice import kept_choice
 from raycaster.fit.unneeded import at_the_edge, covered, label, needed, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
 from raycaster.golden.world import Rectangles
-from raycaster.output import Console
+from raycaster.output import Console, Table
 from raycaster.scene import Rectangle, Scene
 
 SCOPES = {
@@ -264,9 +262,8 @@ def _constant_fields(config: Configuration, fixed: FixedScene) -> Iterator[Omiss
 
 def show(fixing: Fixing, console: Console) -> None:
     """Print the omissions with their reasons."""
-    table = Table(title=f"{fixing.design.name}: left out of {fixing.general.configuration.name}", title_justify="left")
-    table.add_column("left out")
-    table.add_column("reason")
+    title = f"{fixing.design.name}: left out of {fixing.general.configuration.name}"
+    table = Table("left out", "reason", title=title, texts=("reason",))
     for omission in fixing.omissions:
         table.add_row(omission.what, omission.reason)
     console.print(table)

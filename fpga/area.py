@@ -9,13 +9,10 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
-
-from rich.table import Table
 
 from raycaster.buses import BRIDGED
 from raycaster.configuration import Configuration, configure
@@ -27,10 +24,10 @@ from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.fpga import flows
 from raycaster.fpga.cells import DECIDES, FAMILIES, PINS_TOP, TOOLS, Area, Family, measure, measure_modules, synthesise
 from raycaster.fpga.multipliers import register_products
-from raycaster.jobs import run_jobs
+from raycaster.jobs import run_jobs, threads
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_of, table
-from raycaster.output import Console
+from raycaster.output import Console, Table
 from raycaster.tools import find_program, prepare_wasm
 from raycaster.waits import announce
 
@@ -145,23 +142,21 @@ def measure_set(designs: Sequence[Counted], output: Path, console: Console) -> l
 
 def show_features(features: Sequence[Mapping[str, Any]], console: Console) -> None:
     """Print the designs' cells, and how much larger each is than the design without features."""
-    table = _table(
-        "ECP5, by feature; one ray unit for the seed engine", "design", "tables", "more", "registers", "multipliers"
-    )
+    title = "ECP5, by feature; one ray unit for the seed engine"
+    table = Table("design", "tables", "more", "registers", "multipliers", title=title)
     plain = {row["engine"]: row["tables"] for row in features if not row["options"]}
     for row in features:
         switches = " ".join(f"{name.upper()}=1" for name in row["options"])
         more = f"{row['tables'] / plain[row['engine']] - 1:+.1%}"
-        counts = [f"{row[name]:,}" for name in ("registers", "multipliers")]
-        table.add_row(f"{row['engine']} {switches}", f"{row['tables']:,}", more, *counts)
+        table.add_row(f"{row['engine']} {switches}", row["tables"], more, row["registers"], row["multipliers"])
     console.print(table)
 
 
 def show_bridges(bridges: Sequence[Mapping[str, Any]], console: Console) -> None:
     """Print the bridges' cells."""
-    table = _table("ECP5, the bridge alone", "bus", "tables", "registers")
+    table = Table("bus", "tables", "registers", title="ECP5, the bridge alone")
     for row in bridges:
-        table.add_row(row["bus"], f"{row['tables']:,}", f"{row['registers']:,}")
+        table.add_row(row["bus"], row["tables"], row["registers"])
     console.print(table)
 
 
@@ -227,11 +222,11 @@ def show_routed(routed: Mapping[str, Any], console: Console) -> None:
 def show_modules(family: Family, modules: Mapping[str, tuple[int, Area]], flat: Area, console: Console) -> None:
     """Print each module's cells, their sum, and the cells of the flattened design."""
     columns = "instances", "tables", "registers", family.element, "multipliers", "memories"
-    table = _table(f"{family.title}, by module, one instance each", "module", *columns)
+    table = Table("module", *columns, title=f"{family.title}, by module, one instance each")
     total = Area(0, 0, 0, 0, 0)
     for name, (instances, area) in modules.items():
         total += area * instances
-        table.add_row(name, str(instances), *area.texts())
+        table.add_row(name, instances, *area.texts())
     table.add_section()
     table.add_row("all instances", "", *total.texts())
     table.add_row("flattened", "", *flat.texts())
@@ -241,35 +236,29 @@ def show_modules(family: Family, modules: Mapping[str, tuple[int, Area]], flat: 
 def show_units(family: Family, areas: Mapping[int, Area], model: Model, console: Console) -> None:
     """Print the cells of designs with several numbers of units, and how well the model estimates them."""
     columns = "tables", "registers", family.element, "multipliers", "memories", "estimated", "error"
-    table = _table(f"{family.title}, by units", "", *columns)
+    table = Table("", *columns, title=f"{family.title}, by units")
     for name, area in (("shared", model.shared), ("one unit", model.unit)):
         table.add_row(name, *area.texts())
     table.add_section()
     for units, area in areas.items():
         estimated = model.predict(units).elements
-        table.add_row(f"{units} units", *area.texts(), f"{estimated:,}", f"{estimated / area.elements - 1:+.1%}")
+        table.add_row(f"{units} units", *area.texts(), estimated, f"{estimated / area.elements - 1:+.1%}")
     console.print(table)
 
 
 def show_chips(areas: Mapping[str, Area], models: Mapping[str, Model], config: Configuration, console: Console) -> None:
     """Print how much of each board's chip the design takes, and how many units fit."""
-    table = _table("what fits", "board", "chip", "size", f"{config.units} units", "share", "multipliers", "most units")
+    table = Table(
+        "board", "chip", "size", f"{config.units} units", "share", "multipliers", "most units", title="what fits"
+    )
     for chip in CHIPS:
         if area := areas.get(chip.family):
             model = models.get(chip.family)
             share = f"{area.elements / chip.elements:.0%}"
             multipliers = f"{area.multipliers} of {chip.multipliers}"
             most = str(model.fitting(chip, config.screen_geometry.columns)) if model else ""
-            table.add_row(chip.board, chip.name, f"{chip.elements:,}", f"{area.elements:,}", share, multipliers, most)
+            table.add_row(chip.board, chip.name, chip.elements, area.elements, share, multipliers, most)
     console.print(table)
-
-
-def _table(title: str, first: str, *others: str) -> Table:
-    table = Table(title=title)
-    table.add_column(first)
-    for name in others:
-        table.add_column(name, justify="right")
-    return table
 
 
 FAMILY_TITLES = {
@@ -426,5 +415,5 @@ def _run(
     def work(key: tuple[str, int]) -> Any:
         return tasks[key](output / f"{key[0]}-{key[1] or 'modules'}")
 
-    results = run_jobs("counting", work, order, partial(ThreadPoolExecutor, JOBS), console)
+    results = run_jobs("counting", work, order, threads(JOBS), console)
     return dict(zip(order, results, strict=True))

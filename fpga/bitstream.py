@@ -23,7 +23,6 @@ from subprocess import CompletedProcess
 from tempfile import TemporaryDirectory
 
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-from rich.table import Table
 
 from raycaster.configuration import CHANNEL_BITS, Configuration, configure
 from raycaster.convert.provenance import Provenance, files_digest
@@ -43,7 +42,7 @@ from raycaster.options import (
 )
 from raycaster.outcomes import Outcome as Kept
 from raycaster.outcomes import Published, add_keep_option, keep, scope_of, table
-from raycaster.output import Console, replaced
+from raycaster.output import Console, Table, replaced
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import find_scene
 from raycaster.sw.firmware import build_firmware
@@ -347,12 +346,10 @@ def load(board: OpenBoard, made: Path) -> None:
 def show(board: OpenBoard, outcome: Outcome, console: Console) -> None:
     """Print the used cells and the reached clocks."""
     table = Table("cell", "used", "available", "share", title=f"{board.name}, {board.chip}")
-    for column in table.columns[1:]:
-        column.justify = "right"
     for name, (used, there) in sorted(outcome.cells.items()):
-        table.add_row(name, f"{used:,}", f"{there:,}", f"{used / there:.1%}")
+        table.add_row(name, used, there, f"{used / there:.1%}")
     console.print(table)
-    table = Table("clock, or path between clocks", "reached", "required", "")
+    table = Table("clock, or path between clocks", "reached", "required", "", texts=("",))
     rows = [(name, *figures, "MHz") for name, figures in outcome.clocks.items()]
     rows += [(name, *figures, "ns") for name, figures in outcome.crossings.items()]
     for name, reached, required, unit in rows:

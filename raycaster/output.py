@@ -5,19 +5,25 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import rich.console
+import rich.table
+from rich.box import SIMPLE_HEAD
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.protocol import is_renderable
 from rich.text import Text
 
 from raycaster.errors import UserError
 
 MARK = ".raycaster"
 """File that marks a directory as made by a command, so that a later command may remove it."""
+
+LOG_COLUMNS = 150
+"""Columns of text that does not go to a terminal: enough for every table."""
 
 
 def check_replaceable(directory: Path) -> None:
@@ -125,6 +131,8 @@ class Console(rich.console.Console):
     def __init__(self, **options: Any):
         """Turn off markup, emoji names and highlighting; the options are those of rich."""
         super().__init__(markup=False, emoji=False, highlight=False, **options)
+        if "width" not in options and not self.is_terminal:
+            self.width = LOG_COLUMNS
 
     def render_str(self, text: str, **options: Any) -> Text:
         """Render a string that is not yet a `Text`."""
@@ -151,3 +159,27 @@ class Console(rich.console.Console):
     def on_broken_pipe(self) -> None:
         """Leave a broken pipe to `raycaster.options.run_command`."""
         raise BrokenPipeError
+
+
+class Table(rich.table.Table):
+    """A table for a console: the first column is aligned to the left, the others to the right, as numbers are."""
+
+    def __init__(self, *headings: str, title: str | None = None, texts: Collection[str] = (), **options: Any):
+        """Add a column for each heading.
+
+        Args:
+            headings: the headings.
+            title: title above the table.
+            texts: headings of further columns that are aligned to the left, and may wrap.
+            options: further options of rich.
+        """
+        style = {"title_justify": "left", "box": SIMPLE_HEAD, "pad_edge": False, "padding": (0, 1, 0, 0)}
+        super().__init__(title=title, **{**style, **options})
+        for place, heading in enumerate(headings):
+            is_text = place == 0 or heading in texts
+            self.add_column(heading, justify="left" if is_text else "right", no_wrap=not is_text)
+
+    def add_row(self, *cells: Any, **options: Any) -> None:
+        """Add a row; whole numbers get commas, and a renderable is shown as it is."""
+        shown = (f"{cell:,}" if isinstance(cell, int) else cell for cell in cells)
+        super().add_row(*(cell if is_renderable(cell) else str(cell) for cell in shown), **options)

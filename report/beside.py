@@ -16,9 +16,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rich.box import SIMPLE
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-from rich.table import Table
 
 from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
@@ -32,7 +30,7 @@ from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, Area, measure
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong
 from raycaster.outcomes import Outcome, Published, commit_of, table
-from raycaster.output import Console, replaced
+from raycaster.output import Console, Table, replaced
 from raycaster.program import scene_words
 from raycaster.registers import register_map
 from raycaster.scene import Scene, load_scene, packaged_scenes
@@ -256,9 +254,8 @@ def _texts(row: Mapping[str, Any], *counted: str) -> list[str]:
 
 
 def _show(rows: Sequence[Mapping[str, Any]], console: Console) -> None:
-    shown = Table(title="Comparison with other projects and software", title_justify="left", box=SIMPLE)
-    for heading in ("design", "pixels", "LUT4", "registers", "multipliers", "MHz routed / needed", "s per frame"):
-        shown.add_column(heading, justify="left" if heading == "design" else "right")
+    counted = "pixels", "LUT4", "registers", "multipliers", "MHz routed / needed", "s per frame"
+    shown = Table("design", *counted, title="Comparison with other projects and software")
     for row in rows:
         shown.add_row(row["design"], *_texts(row, "luts", "registers", "multipliers"), f"{row['frame_s']:.4f}")
     console.print(shown)

@@ -6,7 +6,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import sys
 import tempfile
 import time
 from collections import defaultdict
@@ -16,9 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rich.box import SIMPLE_HEAD
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table
 from rich.text import Text
 
 from raycaster.configuration import Configuration
@@ -38,7 +35,7 @@ from raycaster.options import (
 from raycaster.outcomes import Check, Published, add_keep_option, keep, scope_of
 from raycaster.outcomes import Outcome as Kept
 from raycaster.outcomes import table as markdown
-from raycaster.output import Console, check_replaceable, printable, put, replaced
+from raycaster.output import Console, Table, check_replaceable, printable, put, replaced
 from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.job import Job
@@ -64,7 +61,6 @@ RESULT = "result.json"
 """File that a bench writes last, when it has a picture."""
 
 POLL_SECONDS = 0.1
-LOG_COLUMNS = 120
 
 
 @dataclass(frozen=True)
@@ -240,30 +236,20 @@ def run_all(runs: list[Design], models: dict[str, Model], sim: Path, jobs: int, 
         return [future.result() for future in futures]
 
 
-def _table(title: str | None = None) -> Table:
-    # Narrow enough for a terminal of 80 columns.
-    return Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False, padding=0)
-
-
 def show_cells(netlists: Mapping[str, Netlist], console: Console) -> None:
     """Print a table of the netlists' cells, one line per netlist."""
-    table = _table()
-    table.add_column("netlist", no_wrap=True)
     used = list({cell: None for netlist in netlists.values() for cell, count in netlist.cells.items() if count})
-    for cell in used:
-        table.add_column(cell.replace("_", "\n"), justify="right", no_wrap=True)
+    table = Table("netlist", *(cell.replace("_", "\n") for cell in used))
     for name, netlist in netlists.items():
-        table.add_row(name, *(str(netlist.cells[cell]) for cell in used))
+        table.add_row(name, *(netlist.cells[cell] for cell in used))
     console.print(table)
 
 
 def show(outcomes: list[Outcome], console: Console, title: str | None = None) -> None:
     """Print a table with one line per scene, then the waveforms and the failures."""
-    table = _table(title)
-    table.add_column("scene", overflow="fold")
-    table.add_column("engine", no_wrap=True)
-    for heading in ("wrong", "vs\nexact", "frame", "row", "group", "alone\nHz", "time\ns"):
-        table.add_column(heading, justify="right", no_wrap=True)
+    # Narrow enough for a terminal of 80 columns.
+    counts = "wrong", "vs\nexact", "frame", "row", "group", "alone\nHz", "time\ns"
+    table = Table("scene", "engine", *counts, title=title, texts=("engine",), padding=0)
     for outcome in outcomes:
         table.add_row(outcome.run.path.stem, *_cells(outcome))
     console.print(table)
@@ -425,7 +411,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     if arguments.cells not in LIBRARIES:
         raise UserError(f"cells: expected {' or '.join(LIBRARIES)}, got {arguments.cells}")
     # In a file or a pipe rich would assume 80 columns, too few for the table.
-    console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
+    console = Console()
     runs = _planned(arguments, console)
     outputs = output_directory(arguments.build, given_options(arguments), gates=gates)
     for run in runs:

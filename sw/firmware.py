@@ -12,12 +12,10 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from rich.table import Table
-
 from raycaster.errors import UserError, not_installed
 from raycaster.memory_map import MEMORY, MEMORY_BYTES
 from raycaster.options import run_command
-from raycaster.output import Console, printable, replaced
+from raycaster.output import Console, Table, printable, replaced
 from raycaster.tools import ToolError, run_program
 
 SOFTWARE = Path(__file__).parent
@@ -102,11 +100,9 @@ def _read_elf(path: Path) -> tuple[bytes, dict[str, int]]:
 def show(sections: dict[str, int], console: Console) -> None:
     """Print the RAM usage."""
     table = Table("section", "bytes", "share", title=f"{MEMORY_BYTES:,} bytes of RAM")
-    for column in table.columns[1:]:
-        column.justify = "right"
     rest = MEMORY_BYTES - sum(sections.values())
     for name, size in (*sections.items(), ("left for the stack", rest)):
-        table.add_row(name, f"{size:,}", f"{size / MEMORY_BYTES:.1%}")
+        table.add_row(name, size, f"{size / MEMORY_BYTES:.1%}")
     console.print(table)
 
 

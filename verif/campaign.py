@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import importlib.util
 import json
 import time
@@ -10,12 +11,15 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import raycaster
 from raycaster import golden, sim
 from raycaster.configuration import Configuration
 from raycaster.digests import digest
-from raycaster.jobs import Kept, run_jobs
+from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, natural, positive, run_jobs
+from raycaster.options import add_build_option, add_configuration_options, command_line, given_options
+from raycaster.outcomes import add_keep_option
 from raycaster.output import Console, emptied
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import VERILATOR_FLAGS, Model, SimulationError, build_model, run_bench
@@ -72,13 +76,40 @@ class Outcome:
     missing: int
     seconds: float
 
-    def verdict(self, cases: str, console: Console) -> int:
-        """Print failures and how many `cases`, a plural noun, have no result; return the command's exit code."""
-        for failure in self.failures:
+    def verdict(self, cases: str, console: Console, wrong: Sequence[str] = ()) -> int:
+        """Print complaints about cases, failures, and how many `cases` have no result; return the exit code.
+
+        A case that is wrong has failed its simulation too.
+        """
+        for failure in [*wrong, *self.failures]:
             console.print(failure, style="red", soft_wrap=True)
         if self.missing:
             console.print(f"{self.missing} {cases} have no result", style="red")
         return int(bool(self.failures or self.missing))
+
+
+def add_campaign_options(parser: argparse.ArgumentParser, cases: str, count: int) -> None:
+    """Add the options of a campaign's command, whose cases are called `cases`, such as seeds."""
+    parser.add_argument(
+        f"--{cases}", type=positive, default=count, metavar="N", help=f"number of {cases} (default: %(default)s)"
+    )
+    parser.add_argument("--first", type=natural, default=0, metavar="N", help=f"the first of the {cases} (%(default)s)")
+    add_job_options(parser)
+    add_fresh_option(parser)
+    add_build_option(parser)
+    add_configuration_options(parser)
+    add_keep_option(parser)
+
+
+def run_asked(campaign: Campaign, arguments: argparse.Namespace, console: Console) -> Outcome:
+    """Run all cases with the job options of a command."""
+    with executors(arguments.scheduler, arguments.jobs) as make_executor:
+        return run_campaign(replace(campaign, fresh=arguments.fresh), console, make_executor)
+
+
+def repeated(command: str, arguments: argparse.Namespace, **options: Any) -> str:
+    """Return the command line that repeats a case with the design of a command."""
+    return f"repeat with: {command_line(command, options=options | given_options(arguments))}"
 
 
 def run_campaign(

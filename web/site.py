@@ -9,7 +9,6 @@ import gzip
 import json
 import shutil
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -19,7 +18,7 @@ from raycaster.configuration import LOOKS, WORLD_SIZE, Configuration, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.engines import SEED
 from raycaster.errors import UserError
-from raycaster.jobs import run_jobs
+from raycaster.jobs import processes, run_jobs
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.options import CommandParser, add_build_option
 from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_of, table
@@ -160,7 +159,7 @@ def write_site(
     """
     firmware = build_firmware((build / "firmware").absolute()).words.read_text()
     built = run_jobs(
-        "models", partial(_build, build=build), models, partial(ProcessPoolExecutor, 2), console,
+        "models", partial(_build, build=build), models, processes(2), console,
         label=lambda model: model.name,
     )  # fmt: skip
     with replaced(output) as site:

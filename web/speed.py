@@ -10,10 +10,9 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from rich.progress import track
-from rich.table import Table
 
 from raycaster.configuration import Configuration
-from raycaster.output import Console
+from raycaster.output import Console, Table
 from raycaster.play.machine import Machine, build_machine
 from raycaster.play.walk import Walker
 from raycaster.scene import load_scene, packaged_scenes

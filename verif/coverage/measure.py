@@ -10,31 +10,26 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
 from pathlib import Path
 
 import numpy as np
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
 from rich.text import Text
 
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
-from raycaster.jobs import Kept, add_fresh_option, run_jobs
+from raycaster.jobs import Kept, add_fresh_option, processes, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, Outcome, add_keep_option, keep, scope_of
-from raycaster.output import Console, emptied
+from raycaster.output import Console, Table, emptied
 from raycaster.scene import find_scene, load_scene, packaged_scenes
 from raycaster.sim.job import Job
-from raycaster.sim.scenes import LOG_COLUMNS
 from raycaster.sim.simulator import (
     BUILD,
     MODULE_BENCH,
@@ -129,7 +124,7 @@ def run_all(
     directories = {run: (output / _digest(run, model) / run.name).resolve() for run in runs}
     kept = Kept(lambda run: directories[run] / "kept.pickle", fresh, complete=lambda found: not found[1])
     runner = partial(_run, model=model, directories=directories)
-    for found, failure in run_jobs("benches", runner, runs, partial(ProcessPoolExecutor, jobs), console, kept=kept):
+    for found, failure in run_jobs("benches", runner, runs, processes(jobs), console, kept=kept):
         counts.update(found)
         failures += [failure] if failure else []
     return counts, failures
@@ -156,10 +151,7 @@ def _run(run: Run, model: Model, directories: Mapping[Run, Path]) -> tuple[Count
 
 def show_code(counts: Counter[Point], judgement: Judgement, console: Console) -> None:
     """Print a line per module, the explanations, holes without an explanation, and explanations without a hole."""
-    table = Table(title="Code coverage: hit / all", title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
-    table.add_column("module", no_wrap=True)
-    for heading in (*KINDS, "explained", "holes"):
-        table.add_column(heading, justify="right", no_wrap=True)
+    table = Table("module", *KINDS, "explained", "holes", title="Code coverage: hit / all")
     modules = sorted({point.module for point in counts})
     for module in (*modules, None):
         cells = [_share(*_hits(counts, module, types)) for types in KINDS.values()]
@@ -167,7 +159,7 @@ def show_code(counts: Counter[Point], judgement: Judgement, console: Console) ->
         holes = sum(module in (None, point.module) for point in judgement.unexplained)
         if module is None:
             table.add_section()
-        table.add_row(module or "all", *cells, str(explained), Text(str(holes), "red" if holes else ""))
+        table.add_row(module or "all", *cells, explained, Text(str(holes), "red" if holes else ""))
     console.print(table)
     console.print("Points that cannot be hit, by explanation:")
     for reason, number in Counter(explanation.reason for explanation in judgement.explained.values()).items():
@@ -211,11 +203,8 @@ def show_functional(functional: FunctionalCoverage, scenes: int, console: Consol
     rows = [row for row in product(results, details) if any((*column, *row, "first") in bins for column in columns)]
     signs = {"negative": "-", "zero": "0", "positive": "+"}
     for ray in rays:
-        title = f"{name}, {ray} ray"
-        table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
-        table.add_column("result", no_wrap=True)
-        for column in columns:
-            table.add_column(" ".join(signs.get(part, part) for part in column), justify="right", no_wrap=True)
+        headings = (" ".join(signs.get(part, part) for part in column) for column in columns)
+        table = Table("result", *headings, title=f"{name}, {ray} ray")
         for result, detail in rows:
             times = [bins.get((*column, result, detail, ray)) for column in columns]
             cells = [Text("" if n is None else f"{n:,}", "red" if n == 0 else "") for n in times]
@@ -291,7 +280,7 @@ def main(argv: list[str] | None = None) -> int:
     extra = [path for path in EXTRA_SCENES if not load_scene(path).lacks(design.looks)]
     scenes = [*packaged_scenes(plain=True).values(), *extra]
     # For a file or a pipe rich would assume 80 columns, too few for the tables.
-    console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
+    console = Console()
     output = arguments.build / "coverage"
     output.mkdir(parents=True, exist_ok=True)
     started = time.perf_counter()
@@ -306,7 +295,7 @@ def main(argv: list[str] | None = None) -> int:
     show_code(counts, judgement, console)
     seeds = range(arguments.seeds)
     whole = Campaign(SOAK, soaked_design, seeds, output / "soak", arguments.build, fresh=arguments.fresh)
-    soaked = run_campaign(whole, console, partial(ProcessPoolExecutor, arguments.jobs))
+    soaked = run_campaign(whole, console, processes(arguments.jobs))
     failures += soaked.failures
     room, most = soaked_design.rectangles, soaked_design.reflections
     drawn = [load_scene(path) for path in scenes]
@@ -315,7 +304,7 @@ def main(argv: list[str] | None = None) -> int:
     figures |= {name: _hits(counts, None, types) for name, types in KINDS.items()}
     holes, bins = 0, 0
     for cross, count in functions_of(design):
-        counter, executor = partial(count, config=soaked_design), partial(ProcessPoolExecutor, arguments.jobs)
+        counter, executor = partial(count, config=soaked_design), processes(arguments.jobs)
         functional = FunctionalCoverage(cross)
         for part in run_jobs("golden pictures", counter, drawn, executor, console):
             functional.add(part)

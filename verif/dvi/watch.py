@@ -104,7 +104,7 @@ def _record(
     device = directory / "dvi_device.v"
     device.write_text(_device(board))
     program = build_program(
-        f"{board.name}-dvi", TOP, [*sources, HERE / f"{board.flow}_models.v", device, BENCH], simulator=simulator,
+        f"{board.name}-dvi", TOP, [*sources, HERE / "models.v", device, BENCH], simulator=simulator,
         flags=("-O3", "--output-split", "20000"), compiler=("-O1",),
     )  # fmt: skip
     done = subprocess.run([*program, *arguments], cwd=directory, capture_output=True, text=True, check=False)

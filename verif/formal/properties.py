@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, Configuration, configure
 from raycaster.engines.beam import (
     AIM_LATENCY,
@@ -255,7 +257,7 @@ def _counters(config: Configuration, small: bool) -> Property:
 def _divider(config: Configuration, part: int, small: bool) -> Property:
     return Property(
         "divider-exact",
-        "quotient * divisor + remainder = dividend, rounded as configured, or overflow; without fraction bits",
+        "quotient * divisor + remainder = dividend, rounded as configured, or overflow",
         config,
         f"{_label(config)} {('digits', 'product', 'result')[part]}",
         ("divider", "divider_step"),
@@ -1051,8 +1053,13 @@ PROPERTIES: list[Property] = [
     _fixed("beam", False, small=True),
     _fixed("beam", True, small=False),
     *(
-        _divider(_tiny(rectangles=2, divider_bits=bits, rounding=rounding), part, small=False)
-        for bits, rounding in ((3, "truncate"), (3, "nearest"), (2, "truncate"), (1, "truncate"))
+        _divider(
+            _tiny(rectangles=2, fraction_bits=fraction_bits, divider_bits=bits, rounding=rounding), part, small=False
+        )
+        for fraction_bits, bits, rounding in (
+            *product((0,), (3, 2, 1), ("truncate", "nearest")),
+            *((1, 3, "nearest"), (4, 3, "truncate"), (8, 2, "nearest"), (8, 1, "nearest")),
+        )
         for part in range(3)
     ),
 ]

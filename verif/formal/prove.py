@@ -12,14 +12,12 @@ import hashlib
 import importlib.metadata
 import importlib.util
 import json
-import sys
 import time
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rich.table import Table
 from rich.text import Text
 
 from raycaster.configuration import configure
@@ -29,7 +27,7 @@ from raycaster.errors import UserError, not_installed
 from raycaster.jobs import add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, add_keep_option, keep
-from raycaster.output import Console
+from raycaster.output import Console, Table
 from raycaster.tools import TIMEOUT
 from raycaster.verif.formal.lemmas import LEMMAS, Lemma, prove_lemma
 from raycaster.verif.formal.properties import PROPERTIES
@@ -85,8 +83,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         for proof in PROOFS
         if (not arguments.property or proof.name in arguments.property) and (proof.small or not arguments.small)
     ]
-    # A table with this many columns is readable in a log as well.
-    console = Console(width=None if sys.stdout.isatty() else 150)
+    console = Console()
     if arguments.list:
         console.print(_list(proofs))
         return 0
@@ -180,15 +177,15 @@ def _outcome(result: Result) -> str:
 
 
 def _list(proofs: list[Property | Lemma]) -> Table:
-    table = Table("property", "configuration", "method", "claim")
+    table = Table("property", "configuration", "method", "claim", texts=("configuration", "method", "claim"))
     for proof in proofs:
         table.add_row(proof.name, proof.label, Result(proof, "", proof.induction, 0).method, proof.claim)
     return table
 
 
 def _table(results: list[Result]) -> Table:
-    table = Table("property", "configuration", "modules", "method", "result")
-    table.add_column("seconds", justify="right")
+    texts = "configuration", "modules", "method", "result"
+    table = Table("property", *texts, "seconds", texts=texts)
     for result in results:
         proof = result.proof
         modules = ", ".join(module for module in proof.modules if module not in proof.cut)

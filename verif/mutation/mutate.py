@@ -26,15 +26,14 @@ import subprocess
 import sys
 import time
 import tomllib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
+from itertools import groupby
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
-
-from rich.box import SIMPLE
-from rich.table import Table
-from rich.text import Text
 
 import raycaster
 from raycaster import golden, hdl, rtl
@@ -46,7 +45,7 @@ from raycaster.errors import UserError
 from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, Outcome, Published, add_keep_option, keep
-from raycaster.output import Console, emptied
+from raycaster.output import Console, Table, emptied
 from raycaster.sim import ensure_tools
 from raycaster.sim.simulator import build_program
 from raycaster.tools import ToolError, run_yosys
@@ -56,6 +55,7 @@ from raycaster.verif.recording import RECORD_VARIABLE, recording_name
 
 SOURCES = Path(__file__).parent
 RTL = Path(rtl.__file__).parent
+LEAVES = SOURCES.resolve().parent / "tests" / "leaves"
 MUTANTS = 200
 SEED = 20150
 LEAST_CAUGHT = 0.97
@@ -69,68 +69,52 @@ class MutationError(ToolError):
 
 
 @dataclass(frozen=True)
-class Explanation:
-    """Reason why a mutant may survive; an empty field fits every mutant.
-
-    Attributes:
-        why: the reason.
-        at: Verilog of the cell, as in `Mutant.at`.
-        kind: kind of cell.
-        port: port of the cell, with the bit or without.
-        mode: mode of the fault.
-    """
-
-    why: str
-    at: str = ""
-    kind: str = ""
-    port: str = ""
-    mode: str = ""
-
-    def fits(self, mutant: Mutant) -> bool:
-        """True if it applies to this mutant."""
-        ports = ("", mutant.port, mutant.port.partition("[")[0])
-        return (
-            self.at in ("", mutant.at)
-            and self.kind in ("", mutant.kind)
-            and self.port in ports
-            and self.mode in ("", mutant.mode)
-        )
-
-
-@dataclass(frozen=True)
 class Expectation:
-    """Entry of a module in the data file.
+    """Facts about a module, from the data file.
 
     Attributes:
-        tests: leaf tests whose recordings are used, as `file::test[parameters]`.
+        test: leaf test whose recordings are used; empty for the one with the module's name.
+        sets: its parameter sets; none for its last one.
         assumptions: Verilog expressions of the module's inputs that its contract guarantees, each with its reason.
         invariants: Verilog expressions of its registers, true from reset on; proved.
-        look_into: submodules that are part of what the solver compares.
-        explained: explanations of the other survivors.
+        look_into: submodules that are part of what the solver compares, with `*` for any text.
+        explained: survivors, as `Mutant` prints them, with `*` for any text, each with the reason.
     """
 
-    tests: tuple[str, ...]
+    test: str = ""
+    sets: Sequence[str] = ()
     assumptions: Mapping[str, str] = field(default_factory=dict)
-    invariants: tuple[str, ...] = ()
-    look_into: tuple[str, ...] = ()
-    explained: tuple[Explanation, ...] = ()
+    invariants: Sequence[str] = ()
+    look_into: Sequence[str] = ()
+    explained: Mapping[str, str] = field(default_factory=dict)
+
+
+def blocks() -> list[str]:
+    """List the blocks of the hardware, each in the file with its name."""
+    return sorted(path.stem for path in RTL.rglob("*.py") if f"@block\ndef {path.stem}(" in path.read_text())
 
 
 def expectations(path: Path = SOURCES / "mutation.toml") -> dict[str, Expectation]:
-    """Read the data file.
+    """Return the expectation of each block that is mutated, from the data file.
 
     Raises:
-        MutationError: it has an unknown key.
+        MutationError: it has an unknown key, or names no block.
     """
-    found = {}
-    for module, values in tomllib.loads(path.read_text()).items():
-        try:
-            explained = tuple(Explanation(**entry) for entry in values.pop("explained", []))
-            lists = {name: tuple(values.pop(name, ())) for name in ("tests", "invariants", "look_into")}
-            found[module] = Expectation(**lists, explained=explained, **values)
-        except TypeError as error:
-            raise MutationError(f"{path.name}, {module}: {error}") from None
+    found = {name: Expectation(f"test_{name}") for name in blocks()}
+    for kind, entries in tomllib.loads(path.read_text()).items():
+        for module, value in entries.items():
+            if module not in found or kind not in ("left_out", *Expectation.__dataclass_fields__):
+                raise MutationError(f"{path.name}: {kind}.{module}: there is no such block or key")
+            if kind == "left_out":
+                del found[module]
+            else:
+                found[module] = replace(found[module], **{kind: value})
     return found
+
+
+def fits(pattern: str, text: str) -> bool:
+    """True if the pattern, in which `*` stands for any text, is the whole text."""
+    return re.fullmatch(re.escape(pattern).replace(r"\*", ".*"), text) is not None
 
 
 @dataclass
@@ -145,7 +129,7 @@ class Mutant:
         at: the Verilog that the cell was made from.
         options: options of Yosys's mutate command.
         outcome: one of `OUTCOMES`.
-        detail: the cycle that caught it, or why it may survive.
+        detail: the cycle that caught it, or the reason why it may survive.
     """
 
     selector: int
@@ -171,10 +155,10 @@ class Result:
     seconds: float
     mutants: list[Mutant]
 
-    def explain(self, explanations: Sequence[Explanation]) -> None:
+    def explain(self, explained: Mapping[str, str]) -> None:
         """Mark the survivors that have an explanation."""
         for mutant in self.mutants:
-            reason = next((entry.why for entry in explanations if entry.fits(mutant)), None)
+            reason = next((why for pattern, why in explained.items() if fits(pattern, str(mutant))), None)
             if mutant.outcome == "surviving" and reason:
                 mutant.outcome, mutant.detail = "explained", reason
 
@@ -262,6 +246,7 @@ class Recording:
             look_into: submodules that are part of what the solver compares.
         """
         submodules = self._submodules()
+        ports = [name for name in submodules if not any(fits(pattern, name) for pattern in look_into)]
         lines = self._choose(count, seed)
         mutants = [self._describe(number, line) for number, line in enumerate(lines, 1)]
         cut = [
@@ -269,8 +254,8 @@ class Recording:
             "pmuxtree",
             f"write_verilog -noattr -selected {self.module}_mutants.v",
             "select -clear",
-            *(f"setattr -mod -set keep_hierarchy 1 {name}" for name in submodules if name not in look_into),
-            *(f"proc -norom {name}" for name in submodules if name in look_into),
+            *(f"setattr -mod -set keep_hierarchy 1 {name}" for name in ports),
+            *(f"proc -norom {name}" for name in submodules if name not in ports),
             "flatten",
             # For the solver, other submodules are only ports: equal inputs give equal outputs.
             f"expose -evert -sep _ {self.module}/c:*",  # of its cells only, else all wires would become outputs
@@ -279,7 +264,7 @@ class Recording:
             "async2sync",
             "dffunmap",
             "setundef -zero",
-            *(f"delete {name}" for name in submodules if name not in look_into),
+            *(f"delete {name}" for name in ports),
             f"write_smt2 -stbv -wires {self.module}.smt2",
         ]
         run_yosys(self._work, "plant", [*self._read(), *lines, *cut])
@@ -436,85 +421,101 @@ def _read_masks(netlist: Mapping[str, Any]) -> dict[str, int]:
     }
 
 
+def leaf_tests() -> dict[str, list[str]]:
+    """Return the parameter sets of each leaf test, as pytest names them."""
+    sets = defaultdict(list)
+    for line in _pytest("--collect-only", str(LEAVES)).stdout.splitlines():
+        sets[line.partition("[")[0].rpartition("::")[2]].append(line)
+    return sets
+
+
+def recordings(known: Mapping[str, Expectation], sets: Mapping[str, list[str]]) -> dict[str, str]:
+    """Return the leaf tests to record, each with its module.
+
+    Args:
+        known: modules to mutate.
+        sets: all leaf tests.
+
+    Raises:
+        MutationError: there is no such test or parameter set.
+    """
+    found = {}
+    for module, expectation in known.items():
+        there = sets.get(expectation.test, [])
+        wanted = [one for one in there if one.partition("[")[2][:-1] in expectation.sets]
+        chosen = wanted if expectation.sets else there[-1:]
+        if len(chosen) != max(len(expectation.sets), 1):
+            raise MutationError(f"{module}: expected sets {expectation.sets} of {expectation.test}, got {chosen}")
+        found |= dict.fromkeys(chosen, module)
+    return found
+
+
+def _pytest(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", *arguments], cwd=LEAVES.parents[2], env=os.environ | environment,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+
+
 def record(tests: Iterable[str], directory: Path, jobs: int) -> None:
     """Run leaf tests with recording switched on.
 
     Args:
-        tests: `file::test[parameters]`.
+        tests: names of the tests.
         directory: gets one recording per test; a recording of the same sources is kept.
         jobs: number of tests at a time.
 
     Raises:
-        MutationError: a test failed or does not exist.
+        MutationError: a test failed.
     """
-    tested = SOURCES.parent / "tests"
     packages = (Path(package.__path__[0]) for package in (raycaster, rtl, golden, hdl))
-    made_of = digest(
-        os.environ.get(seeds.VARIABLE), tested, Path(expected.__file__), Path(recording.__file__), *packages
-    )
-    stamps = {test: directory / f"{recording_name(test.partition('::')[2])}.stamp" for test in tests}
+    checks = Path(expected.__file__), Path(recording.__file__)
+    made_of = digest(os.environ.get(seeds.VARIABLE), LEAVES.parent, *checks, *packages)
+    stamps = {test: directory / f"{_recording_of(test)}.stamp" for test in tests}
     missing = [test for test, stamp in stamps.items() if not stamp.exists() or stamp.read_text() != made_of]
     if not missing:
         return
-    command = [sys.executable, "-m", "pytest", "-q", "-n", str(jobs), "--dist", "worksteal"]
-    done = subprocess.run(
-        [*command, *missing], cwd=tested, env=os.environ | {RECORD_VARIABLE: str(directory.resolve())},
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+    options = "-n", str(jobs), "--dist", "worksteal"
+    done = _pytest(*options, *missing, **{RECORD_VARIABLE: str(directory.resolve())})
     if done.returncode:
         raise MutationError(f"the leaf tests could not be recorded:\n{done.stdout[-2000:]}{done.stderr[-1000:]}")
     for test in missing:
         stamps[test].write_text(made_of)
 
 
-def stale(results: Iterable[Result], known: Mapping[str, Expectation]) -> list[str]:
-    """List the explanations that no mutant needs."""
-    found = []
-    for module, expectation in known.items():
-        mutants = [mutant for result in results if result.module == module for mutant in result.mutants]
-        for entry in expectation.explained:
-            if not any(mutant.outcome == "explained" and entry.fits(mutant) for mutant in mutants):
-                found.append(f"{module}: {entry}")
-    return found
+def _recording_of(test: str) -> str:
+    return recording_name(test.partition("::")[2])
 
 
-def count_outcomes(mutants: Iterable[Mutant]) -> dict[str, int]:
+def count_outcomes(results: Iterable[Result]) -> dict[str, int]:
     """Count the mutants with each outcome."""
-    counts: dict[str, int] = dict.fromkeys(OUTCOMES, 0)
-    for mutant in mutants:
-        counts[mutant.outcome] += 1
-    return counts
+    counts = Counter(mutant.outcome for result in results for mutant in result.mutants)
+    return {outcome: counts[outcome] for outcome in OUTCOMES}
 
 
-def share_caught(counts: Mapping[str, int]) -> float:
+def share_caught(results: Iterable[Result]) -> float:
     """Return the caught share of the mutants that are not equivalent; explained ones count as not caught."""
+    counts = count_outcomes(results)
     different = counts["caught"] + counts["explained"] + counts["surviving"]
     return counts["caught"] / different if different else 1.0
 
 
-def _table(results: list[Result]) -> Table:
-    table = Table(title="Mutants of each module", title_justify="left", box=SIMPLE, padding=0)
-    table.add_column("module", no_wrap=True)
-    for heading in ("mutants", *OUTCOMES, "of all", "of the rest", "seconds"):
-        table.add_column(heading, justify="right", no_wrap=True)
+def by_module(results: Iterable[Result]) -> dict[str, list[Result]]:
+    """Return the results of each module."""
+    ordered = sorted(results, key=attrgetter("module"))
+    return {module: list(of_module) for module, of_module in groupby(ordered, attrgetter("module"))}
 
-    def add(label: str, chosen: list[Result], style: str = "") -> None:
-        counts = _counts(chosen)
+
+def _table(results: list[Result]) -> Table:
+    table = Table("module", "mutants", *OUTCOMES, "of all", "of the rest", "seconds", title="Mutants of each module")
+    for label, chosen in {**by_module(results), "all": results}.items():
+        counts = count_outcomes(chosen)
         total = sum(counts.values())
         table.add_row(
-            Text(label, style), str(total), *map(str, counts.values()), f"{counts['caught'] / max(total, 1):.1%}",
-            f"{share_caught(counts):.1%}", f"{sum(result.seconds for result in chosen):.0f}",
+            label, total, *counts.values(), f"{counts['caught'] / max(total, 1):.1%}", f"{share_caught(chosen):.1%}",
+            f"{sum(result.seconds for result in chosen):.0f}", style="bold" if label == "all" else "",
         )  # fmt: skip
-
-    for module in sorted({result.module for result in results}):
-        add(module, [result for result in results if result.module == module])
-    table.add_section()
-    add("all", results, "bold")
     return table
-
-
-def _counts(results: list[Result]) -> dict[str, int]:
-    return count_outcomes(mutant for result in results for mutant in result.mutants)
 
 
 def complaints(results: list[Result], known: Mapping[str, Expectation]) -> list[str]:
@@ -522,19 +523,21 @@ def complaints(results: list[Result], known: Mapping[str, Expectation]) -> list[
 
     Args:
         results: results of all recordings.
-        known: entries whose explanations must all be needed.
+        known: modules whose explanations must all be needed.
     """
-    found = [
-        f"{result.module}: survives the vectors of {result.recording}: {mutant}"
-        for result in results
-        for mutant in result.mutants
-        if mutant.outcome == "surviving"
-    ]
-    for module in {result.module: None for result in results}:
-        counts = count_outcomes(mutant for result in results if result.module == module for mutant in result.mutants)
-        if share_caught(counts) < LEAST_CAUGHT:
+    found = []
+    for module, of_module in by_module(results).items():
+        mutants = [(result.recording, mutant) for result in of_module for mutant in result.mutants]
+        for recording, mutant in mutants:
+            if mutant.outcome == "surviving":
+                found.append(f"{module}: survives the vectors of {recording}: {mutant}")
+        if share_caught(of_module) < LEAST_CAUGHT:
             found.append(f"{module}: fewer than {LEAST_CAUGHT:.0%} of the mutants that differ are caught")
-    return found + [f"needed by no mutant: {text}" for text in stale(results, known)]
+        explained = [str(mutant) for _, mutant in mutants if mutant.outcome == "explained"]
+        for pattern in known[module].explained if module in known else ():
+            if not any(fits(pattern, text) for text in explained):
+                found.append(f"{module}: needed by no mutant: {pattern}")
+    return found
 
 
 @dataclass(frozen=True)
@@ -551,7 +554,7 @@ class Job:
     @property
     def name(self) -> str:
         """Name of the recording."""
-        return recording_name(self.test.partition("::")[2])
+        return _recording_of(self.test)
 
     @property
     def directory(self) -> Path:
@@ -562,7 +565,7 @@ class Job:
         """Return the file in which the result is kept."""
         files = sorted(path for path in self.directory.iterdir() if path.is_file())
         tools = [SOURCES / "equivalence.py", SOURCES / "replay.cpp"]
-        choice = self.mutants, self.seed, replace(self.expectation, tests=())
+        choice = self.mutants, self.seed, replace(self.expectation, test="", sets=())
         key = digest(inspect.getsource(Recording), choice, [path.name for path in files], *files, *tools)
         return self.build / "results" / f"{self.name}-{key}.pickle"
 
@@ -575,18 +578,6 @@ class Job:
             return recording.run(self.mutants, self.seed, self.expectation)
         except UserError as error:
             return f"{self.test}: {error}"
-
-
-def _progress(console: Console) -> Callable[[Job, Result | str], None]:
-    """Return a function that prints a line for each finished recording, for a log without a progress bar."""
-
-    def finished(job: Job, found: Result | str) -> None:
-        said = (
-            found if isinstance(found, str) else f"{found.seconds:.0f} s, {share_caught(_counts([found])):.1%} caught"
-        )
-        console.print(f"{job.name}: {said}", soft_wrap=True)
-
-    return finished
 
 
 def command_parser() -> CommandParser:
@@ -626,8 +617,7 @@ def _found(kept: Outcome) -> str:
 
 def unmutated(known: Iterable[str]) -> list[str]:
     """List the blocks of the hardware that are not among these modules."""
-    blocks = {path.stem for path in RTL.rglob("*.py") if f"@block\ndef {path.stem}(" in path.read_text()}
-    return sorted(blocks - set(known))
+    return sorted({*blocks()} - {*known})
 
 
 CHECKS = (Check("faults planted in modules", "the modules' leaf tests", ["mutate"], _found),)
@@ -658,38 +648,36 @@ def main(argv: list[str] | None = None) -> int:
         if module not in known:
             raise UserError(f"--module: got {module}, expected one of {', '.join(known)}")
     known = {module: known[module] for module in arguments.module or known}
-    tests = {test: module for module, expectation in known.items() for test in expectation.tests}
-
-    # A table with this many columns is readable in a log as well.
-    console = Console(width=None if sys.stdout.isatty() else 150)
+    console = Console()
     with console.waiting("recording the leaf tests"):
+        tests = recordings(known, leaf_tests())
         record(tests, arguments.build / "recordings", arguments.jobs)
     jobs = [
-        Job(test, module, arguments.build, arguments.mutants, arguments.seed, replace(known[module], explained=()))
+        Job(test, module, arguments.build, arguments.mutants, arguments.seed, replace(known[module], explained={}))
         for test, module in tests.items()
     ]
+
+    def finished(job: Job, found: Result | str) -> None:
+        """Print a line for each recording, for a log without a progress bar."""
+        said = found if isinstance(found, str) else f"{found.seconds:.0f} s, {share_caught([found]):.1%} caught"
+        console.print(f"{job.name}: {said}", soft_wrap=True)
+
     kept = Kept(Job.place, arguments.fresh, complete=lambda found: isinstance(found, Result))
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
-        done = run_jobs("recordings", Job.run, jobs, make_executor, console, kept=kept, finished=_progress(console))
+        done = run_jobs("recordings", Job.run, jobs, make_executor, console, kept=kept, finished=finished)
     results = [one for one in done if isinstance(one, Result)]
     failures = [one for one in done if isinstance(one, str)]
     for result in results:
         result.explain(known[result.module].explained)
     (arguments.build / "results.json").write_text(json.dumps([asdict(result) for result in results], indent=2) + "\n")
     console.print(_table(results))
-    by_module = {module: [one for one in results if one.module == module] for module in known}
-    shares = {module: share_caught(_counts(of_module)) for module, of_module in by_module.items()}
-    worst = min(shares, key=shares.__getitem__)
-    figures = {"modules": len({one.module for one in results}), "recordings": len(results), **_counts(results)}
-    figures["not_run"] = len(failures)
-    figures |= {"caught_of_the_rest": share_caught(_counts(results)), "worst": worst, "worst_caught": shares[worst]}
-    keep(
-        arguments,
-        figures,
-        {"mutants_a_recording": arguments.mutants, "seed": arguments.seed},
-        provenance,
-        ", ".join(unmutated(known)),
-    )
+    shares = {module: share_caught(of_module) for module, of_module in by_module(results).items()}
+    worst = min(shares, key=shares.__getitem__, default="")
+    figures = {"modules": len(shares), "recordings": len(results), **count_outcomes(results)}
+    figures |= {"not_run": len(failures), "caught_of_the_rest": share_caught(results)}
+    figures |= {"worst": worst, "worst_caught": shares.get(worst)}
+    scope = {"mutants_a_recording": arguments.mutants, "seed": arguments.seed}
+    keep(arguments, figures, scope, provenance, ", ".join(unmutated(known)))
     # Other choices of faults need not have the survivors that are explained.
     usual = (arguments.mutants, arguments.seed) == (MUTANTS, SEED)
     found = failures + complaints(results, known if usual and not failures else {})

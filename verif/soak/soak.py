@@ -7,24 +7,14 @@ import argparse
 from collections import defaultdict
 from collections.abc import Sequence
 
-from rich.table import Table
-
 from raycaster.configuration import MOST_REFLECTIONS, Configuration, configure
 from raycaster.convert.provenance import Provenance
-from raycaster.errors import UserError
 from raycaster.golden.catalogue import catalogue
-from raycaster.jobs import add_fresh_option, add_job_options, executors
-from raycaster.options import (
-    CommandParser,
-    add_build_option,
-    add_configuration_options,
-    command_line,
-    given_options,
-)
-from raycaster.outcomes import Check, Outcome, add_keep_option, keep, scope_of
-from raycaster.output import Console
+from raycaster.options import CommandParser, given_options
+from raycaster.outcomes import Check, Outcome, keep, scope_of
+from raycaster.output import Console, Table
 from raycaster.sim.simulator import add_simulator_option
-from raycaster.verif.campaign import Campaign, run_campaign
+from raycaster.verif.campaign import Campaign, add_campaign_options, repeated, run_asked
 from raycaster.verif.random_scenes import style_of
 
 BENCH = "raycaster.verif.soak.bench"
@@ -37,32 +27,24 @@ def show(
     rows: dict[tuple[str, int], list[dict]] = defaultdict(list)
     for result in results:
         rows["stiff" if stiff else style_of(result["seed"]), result["reflections"]].append(result)
-    table = Table(title=f"{configuration.name}, {len(results)} scenes in {seconds:.0f} s")
-    table.add_column("style")
-    for heading in ("reflections", "scenes", "pixels", "wrong", "against exact"):
-        table.add_column(heading, justify="right")
+    title = f"{configuration.name}, {len(results)} scenes in {seconds:.0f} s"
+    table = Table("style", "reflections", "scenes", "pixels", "wrong", "against exact", title=title)
     for (style, reflections), group in [*sorted(rows.items()), (("all", ""), results)]:
-        pixels = sum(result["pixels"] for result in group)
-        rounding = sum(result["wrong_vs_exact"] for result in group)
-        wrong = sum(result["wrong_vs_golden"] for result in group)
+        pixels, wrong, rounding = (
+            sum(result[name] for result in group) for name in ("pixels", "wrong_vs_golden", "wrong_vs_exact")
+        )
         # The golden model of an engine that does not round is exact, so there is no rounding to count.
         share = f"{100 * rounding / pixels:.2f} %" if pixels and configuration.facts.divides else ""
-        table.add_row(style, str(reflections), str(len(group)), f"{pixels:,}", f"{wrong:,}", share)
+        table.add_row(style, reflections, len(group), pixels, wrong, share)
     console.print(table)
 
 
 def command_parser() -> CommandParser:
     """Build the parser of the command line."""
     parser = CommandParser("verify soak", __doc__, "--seeds 10")
-    parser.add_argument("--seeds", type=int, default=100, metavar="N", help="number of scenes (default: %(default)s)")
-    parser.add_argument("--first", type=int, default=0, metavar="SEED", help="first seed (default: %(default)s)")
     parser.add_argument("--stiff", action="store_true", help="run all cases of the stiff catalogue instead")
-    add_job_options(parser)
-    add_fresh_option(parser)
     add_simulator_option(parser)
-    add_build_option(parser)
-    add_configuration_options(parser)
-    add_keep_option(parser)
+    add_campaign_options(parser, "seeds", 100)
     return parser
 
 
@@ -101,33 +83,26 @@ CHECKS = (
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
-    if arguments.seeds < 1 or arguments.first < 0:
-        raise UserError("seeds: must be 1 or more, first: 0 or more")
-    configuration = _configuration(arguments)
-    console = Console()
-    output = arguments.build / "soak"
+    configuration, console = _configuration(arguments), Console()
     seeds = range(arguments.first, arguments.first + arguments.seeds)
     if arguments.stiff:
         seeds = range(len(catalogue(configuration.looks)))
+    output = arguments.build / "soak"
     whole = Campaign(
-        BENCH, configuration, seeds, output, arguments.build, simulator=arguments.simulator, stiff=arguments.stiff,
-        fresh=arguments.fresh,
-    )  # fmt: skip
-    with executors(arguments.scheduler, arguments.jobs) as make_executor:
-        outcome = run_campaign(whole, console, make_executor)
+        BENCH, configuration, seeds, output, arguments.build, simulator=arguments.simulator, stiff=arguments.stiff
+    )
+    outcome = run_asked(whole, arguments, console)
     results = outcome.results
     show(results, outcome.seconds, configuration, console, stiff=arguments.stiff)
-    for result in results:
-        if result["wrong_vs_golden"]:
-            which = {"stiff": True} if arguments.stiff else {"seeds": 1, "first": result["seed"]}
-            repeat = command_line("verify soak", options=which | given_options(arguments))
-            console.print(
-                f"seed {result['seed']}: {result['wrong_vs_golden']} wrong pixels; the scene, whole and shrunk, "
-                f"is in {output}/*/from*/{result['seed']}*.toml; repeat with: {repeat}",
-                style="red",
-                soft_wrap=True,
-            )
     counts = {name: sum(one[name] for one in results) for name in ("pixels", "wrong_vs_golden", "wrong_vs_exact")}
     figures = {"scenes": len(results), "not_shown": outcome.missing, **counts}
     keep(arguments, figures, scope_of(configuration) | {"stiff": arguments.stiff}, provenance)
-    return outcome.verdict("scenes", console)
+    wrong = []
+    for result in results:
+        if result["wrong_vs_golden"]:
+            which = {"stiff": True} if arguments.stiff else {"seeds": 1, "first": result["seed"]}
+            wrong.append(
+                f"seed {result['seed']}: {result['wrong_vs_golden']} wrong pixels; the scene, whole and shrunk, "
+                f"is in {output}/*/from*/{result['seed']}*.toml; {repeated('verify soak', arguments, **which)}"
+            )
+    return outcome.verdict("scenes", console, wrong)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+from pathlib import Path
 from types import SimpleNamespace
 
 import conftest
@@ -74,14 +75,16 @@ def test_all_needs_a_clone(tmp_path, monkeypatch):
 
 TESTS = """
 import os, pathlib, time, pytest
-@pytest.mark.parametrize("number", range(3))
+def ran(name):
+    pathlib.Path(os.environ["RAN"]).open("a").write(name + " ")
+@pytest.mark.parametrize("number", range(2))
 def test_quick(number):
-    pathlib.Path(os.environ["RAN"]).open("a").write(f"quick{number} ")
+    ran(f"quick{number}")
 def test_long():
-    pathlib.Path(os.environ["RAN"]).open("a").write("long ")
-    time.sleep(1)
+    ran("long")
+    time.sleep(0.5)
 def test_wrong():
-    pathlib.Path(os.environ["RAN"]).open("a").write("wrong ")
+    ran("wrong")
     assert pathlib.Path(os.environ["MENDED"]).exists()
 def test_absent():
     pytest.skip("no such board")
@@ -89,69 +92,64 @@ def test_absent():
 
 
 @pytest.fixture
-def run_all(tmp_path, monkeypatch, names_for_digests):
-    """Return a function that runs the command on a small clone and returns its exit code, tests run and figures."""
-    clone, ran, kept = tmp_path / "clone", tmp_path / "ran", tmp_path / "clone" / "results" / "kept.json"
-    tests = clone / "verif" / "tests"
-    tests.mkdir(parents=True)
+def clone(tmp_path, monkeypatch, names_for_digests):
+    """Return a small clone for the command, with two files of tests."""
+    tests = tmp_path / "clone" / "verif" / "tests"
+    (tests / "leaves").mkdir(parents=True)
     (tests / "test_small.py").write_text(TESTS)
-    (clone / ".gitignore").write_text("build\n__pycache__\n.pytest_cache\n")
-    subprocess.run(["git", "init", "-q", str(clone)], check=True)
+    (tests / "leaves" / "test_more.py").write_text(TESTS.replace("quick", "more").split("def test_long")[0])
+    (tmp_path / "clone" / ".gitignore").write_text("build\n__pycache__\n.pytest_cache\n")
+    subprocess.run(["git", "init", "-q", str(tmp_path / "clone")], check=True)
     monkeypatch.setattr(everything.ensure_tools, "ensure", lambda tool: None)
     monkeypatch.setattr(everything, "TESTS", tests)
     # Each run starts two interpreters, which load only the plugin that they need.
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
     monkeypatch.setenv("PYTEST_PLUGINS", "xdist.plugin")
-    monkeypatch.setenv("RAN", str(ran))
+    monkeypatch.setenv("RAN", str(tmp_path / "ran"))
     monkeypatch.setenv("MENDED", str(tmp_path / "mended"))
-
-    def run(*options: str):
-        ran.write_text("")
-        code = everything.main(["--jobs", "1", "--keep", str(kept), *options])
-        return code, ran.read_text().split(), json.loads(kept.read_text())["figures"]
-
-    return run
+    return tmp_path / "clone"
 
 
-def test_all_is_resumed(run_all, tmp_path, capsys):
-    code, ran, figures = run_all()
+def run_all(clone: Path) -> tuple[int, list[str], dict]:
+    """Run the command; return its exit code, the tests that it ran, in order, and its figures."""
+    ran, kept = clone.with_name("ran"), clone / "results" / "kept.json"
+    ran.write_text("")
+    code = everything.main(["--jobs", "1", "--keep", str(kept)])
+    return code, ran.read_text().split(), json.loads(kept.read_text())["figures"]
+
+
+def test_all_is_resumed(clone, capsys):
+    code, ran, figures = run_all(clone)
     assert code == 1
-    assert sorted(ran) == ["long", "quick0", "quick1", "quick2", "wrong"]
+    assert sorted(ran) == ["long", "more0", "more1", "quick0", "quick1", "wrong"]
     assert figures["failed"] == ["verif/tests/test_small.py::test_wrong"]
     assert figures["skipped"] == {"no such board": 1}
-    assert (figures["tests"], figures["passed"], figures["not_run"], figures["runs"]) == (6, 4, 0, 1)
-    # With the same sources, only tests that have not passed yet run.
-    (tmp_path / "mended").touch()
-    code, ran, figures = run_all()
-    assert (code, ran, figures["failed"], figures["passed"], figures["runs"]) == (0, ["wrong"], [], 5, 2)
-    assert "resumed: 4 of 6 tests have passed" in capsys.readouterr().out
-    # A fresh run starts with the longest test.
-    code, ran, figures = run_all("--fresh")
-    assert (code, ran[0], len(ran), figures["runs"]) == (0, "long", 5, 1)
-    # After a source has changed, all tests run again.
-    (tmp_path / "clone" / "rtl.py").write_text("changed")
-    assert len(run_all()[1]) == 5
-    # A page is not a source, and a new or changed test file runs only its own tests.
-    (tmp_path / "clone" / "page.md").write_text("changed")
-    tests = tmp_path / "clone" / "verif" / "tests" / "leaves"
-    tests.mkdir()
-    (tests / "test_more.py").write_text(TESTS.replace("quick", "more"))
-    code, ran, figures = run_all()
-    assert sorted(ran) == ["long", "more0", "more1", "more2", "wrong"]
-    assert (code, figures["tests"], figures["passed"]) == (0, 12, 10)
-    (tests / "test_more.py").write_text(TESTS.replace("quick", "other"))
-    code, ran, figures = run_all()
-    assert sorted(ran) == ["long", "other0", "other1", "other2", "wrong"]
-    assert (code, figures["tests"], figures["passed"]) == (0, 12, 10)
+    assert [figures[name] for name in ("tests", "passed", "not_run", "runs")] == [7, 5, 0, 1]
+    # Tests that have not passed run again, and those of a changed test file; a page is not a source.
+    clone.with_name("mended").touch()
+    (clone / "page.md").write_text("changed")
+    more = clone / "verif" / "tests" / "leaves" / "test_more.py"
+    more.write_text(more.read_text().replace("more", "other"))
+    code, ran, figures = run_all(clone)
+    assert (code, sorted(ran)) == (0, ["other0", "other1", "wrong"])
+    assert [figures[name] for name in ("tests", "passed", "failed", "runs")] == [7, 6, [], 2]
+    assert "resumed: 3 of 5 tests have passed" in capsys.readouterr().out
+    # After a source has changed, all tests run again, the longest first.
+    (clone / "rtl.py").write_text("changed")
+    code, ran, figures = run_all(clone)
+    assert (code, ran[0], len(ran), figures["runs"]) == (0, "long", 6, 1)
 
 
 def test_results_of_an_interrupted_run_are_kept(tmp_path):
-    """The state file ends where the machine stopped, possibly in the middle of a line."""
+    """The state file ends where the machine stopped, possibly in the middle of a line; a fresh run forgets it."""
     state = everything.State(tmp_path / "state")
-    state.add({"sources": "a", "files": {}, "fresh": False})
+    begin = {"sources": "a", "files": {"x": "b", "y": "c"}, "fresh": False}
+    state.add(begin)
     state.add({"wanted": ["x", "y"]})
     state.add({"test": "x", "outcome": "passed", "reason": "", "seconds": 2.0, "at": 3.0})
     with (tmp_path / "state").open("a") as file:
         file.write('{"test": "y", "out')
-    figures = everything.State(tmp_path / "state").figures()
-    assert (figures["tests"], figures["passed"], figures["not_run"], figures["wall_seconds"]) == (2, 1, 1, 3)
+    state = everything.State(tmp_path / "state")
+    assert [state.figures()[name] for name in ("tests", "passed", "not_run", "wall_seconds")] == [2, 1, 1, 3]
+    state.add(begin | {"fresh": True})
+    assert (state.passed, state.seconds) == (set(), {"x": 2})

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import errno
 import io
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -14,10 +16,13 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT, SMALL_SCENE, called
+from rich.text import Text
 
 from raycaster import output
+from raycaster.cli.__main__ import main
 from raycaster.fit.fixing import fix, show
-from raycaster.output import Console, emptied, printable, replaced
+from raycaster.options import run_command
+from raycaster.output import Console, Table, emptied, printable, replaced
 from raycaster.scene import Scene, load_scene
 from raycaster.sim.simulator import MODELS_VARIABLE
 
@@ -156,14 +161,27 @@ def test_commands_show_text_as_it_is(hostile_scene: Path, words: tuple[str, ...]
         assert "[bold]x[/nope]" in done.stdout  # the table wraps the rest
 
 
-def test_every_console_is_the_projects():
+def test_a_table_aligns_numbers(capsys):
+    table = Table("name", "count", "reason", title="Title", texts=("reason",))
+    table.add_row("a", 12345, Text("why"))
+    table.add_row("long", 6, "[b]")
+    Console().print(table)
+    lines = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+    assert [line for line in lines if "\u2500" not in line] == [
+        "Title", "", " name   count  reason", " a     12,345  why", " long       6  [b]", "",
+    ]  # fmt: skip
+
+
+def test_every_console_and_table_is_the_projects():
     """Rich's own console interprets brackets as markup."""
+    forbidden = {"rich.console", "rich.markup", "rich.table", "rich.print"}
     for path in ROOT.rglob("*.py"):
         if {".venv", "build", "tests"} & {*path.parts} or path == ROOT / "raycaster" / "output.py":
             continue
-        for node in ast.walk(ast.parse(path.read_text())):
-            assert not (isinstance(node, ast.ImportFrom) and node.module in ("rich.console", "rich.markup")), path
-            assert not (isinstance(node, ast.ImportFrom) and node.module == "rich" and node.names[0].name == "print")
+        imports = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.ImportFrom)]
+        assert not forbidden & {
+            name for node in imports for name in (node.module, f"{node.module}.{node.names[0].name}")
+        }
 
 
 @pytest.mark.parametrize(
@@ -213,35 +231,48 @@ def test_a_full_disk(tmp_path: Path, monkeypatch, refuses):
     assert [path.name for path in tmp_path.iterdir()] == ["kept"]
 
 
-@pytest.mark.parametrize("unbuffered", ["", "1"])
-@pytest.mark.parametrize(
-    "words", [(), ("--help",), ("scenes",), ("completion", "bash"), ("verilog", "SCREEN=tiny", "ENGINE=exact")]
-)
-def test_standard_output_that_takes_nothing(tmp_path: Path, words: tuple[str, ...], unbuffered: str):
-    given = {"cwd": tmp_path, "env": os.environ | {"PYTHONUNBUFFERED": unbuffered}, "capture_output": False}
-    with open("/dev/full", "w") as full:
-        done = raycaster(*words, stdout=full, stderr=subprocess.PIPE, **given)
-    assert done.returncode == 2
-    assert done.stderr.startswith("error: ")
-    assert "No space left on device; free some space" in done.stderr
-    assert done.stderr.count("\n") == 1
+FULL = "No space left on device; free some space, or choose another place for the output"
+
+
+@pytest.mark.parametrize("buffering", [-1, 0])
+@pytest.mark.parametrize("words", [("--help",), ("scenes",), ("completion", "bash")], ids=" ".join)
+def test_standard_output_that_takes_nothing(words: tuple[str, ...], buffering: int, capsys):
+    """Writing fails at once, or when buffered text is flushed."""
     reader, writer = os.pipe()
     os.close(reader)
-    done = raycaster(*words, stdout=writer, stderr=subprocess.PIPE, **given)
+    for file, code, said in (
+        ("/dev/full", 2, f"error: (standard )?output: {FULL}\n"),
+        (writer, 128 + signal.SIGPIPE, ""),
+    ):
+        with io.TextIOWrapper(open(file, "wb", buffering), write_through=not buffering) as stream:
+            with contextlib.redirect_stdout(stream), pytest.raises(SystemExit) as ended:
+                run_command(lambda: main(words))
+            assert ended.value.code == code
+        assert re.fullmatch(said, capsys.readouterr().err)
+
+
+@pytest.mark.parametrize("words", [(), ("scenes",)], ids=" ".join)
+def test_an_interpreter_ends_without_a_complaint(tmp_path: Path, words: tuple[str, ...]):
+    """Python itself flushes the output once more when it ends."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    buffered = os.environ | {"PYTHONUNBUFFERED": ""}
+    given = {"cwd": tmp_path, "env": buffered, "capture_output": False, "stderr": subprocess.PIPE}
+    with open("/dev/full", "w") as full:
+        done = raycaster(*words, stdout=full, **given)
+    assert done.returncode == 2
+    assert re.fullmatch(f"error: (standard )?output: {FULL}\n", done.stderr)
+    done = raycaster(*words, stdout=writer, **given)
     os.close(writer)
     assert (done.returncode, done.stderr) == (128 + signal.SIGPIPE, "")
+    done = raycaster(*words, preexec_fn=lambda: os.close(1), **given)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_a_terminal_without_the_character(tmp_path: Path):
     done = raycaster("sim", "größe", cwd=tmp_path, env=os.environ | {"PYTHONIOENCODING": "ascii"})
     assert done.returncode == 2
     assert done.stderr.startswith(r"error: gr\xf6\xdfe: no such file")
-
-
-def test_a_standard_output_that_is_closed(tmp_path: Path):
-    command = f"{sys.executable} -m raycaster.cli scenes >&-"
-    done = subprocess.run(["sh", "-c", command], cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_title_of_a_scene_is_text(capsys):

@@ -4,14 +4,12 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from collections import Counter
 from itertools import product
 from pathlib import Path
 
 import pytest
-from conftest import BUILD, ROOT, SMALL_SCENE
+from conftest import BUILD, ROOT, SMALL_SCENE, called
 from rich.console import Console
 
 from raycaster.configuration import configure
@@ -55,37 +53,23 @@ def test_the_catalogue_has_what_a_design_shows():
 
 
 @pytest.mark.slow
-def test_soak():
-    """A few scenes at full size."""
-    build = BUILD / "test" / "soak"
-    ran = subprocess.run(
-        [sys.executable, "-m", "raycaster.cli", "verify", "soak", "--seeds", "8", "--build", str(build)],
-        cwd=ROOT, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "seeds", "reflections", "pixels"),
+    [
+        (("--seeds", "8"), range(8), {3, 4}, 640 * 480),
+        # `make soak STIFF=1 ENGINE=exact` uses the full size.
+        (("--stiff", "--engine", "exact", "--screen", "tiny"), range(len(catalogue())), {4}, 64 * 48 * 4),
+    ],
+    ids=["random", "stiff"],
+)
+def test_soak(words, seeds, reflections, pixels, output):
+    """Draw a few scenes at full size, and the stiff catalogue with the exact engine on the tiny screen."""
+    ran = called("verify", "soak", *words, "--build", str(output), cwd=ROOT)
     assert ran.returncode == 0, ran.stdout + ran.stderr
-    results = [json.loads(line) for line in (build / "soak" / "results.jsonl").read_text().splitlines()]
-    assert [result["seed"] for result in results] == list(range(8))
-    assert {3, 4} < {result["reflections"] for result in results}
-    assert all(result["pixels"] == 640 * 480 and result["wrong_vs_golden"] == 0 for result in results)
-
-
-@pytest.mark.slow
-def test_the_exact_engine_draws_the_stiff_catalogue():
-    """This test uses the tiny screen; `make soak STIFF=1 ENGINE=exact` uses the full size."""
-    build = BUILD / "test" / "stiff"
-    options = ("--stiff", "--engine", "exact", "--screen", "tiny", "--build", str(build))
-    ran = subprocess.run(
-        [sys.executable, "-m", "raycaster.cli", "verify", "soak", *options],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert ran.returncode == 0, ran.stdout + ran.stderr
-    results = [json.loads(line) for line in (build / "soak" / "results.jsonl").read_text().splitlines()]
-    assert len(results) == len(catalogue()) >= 50
-    assert {result["reflections"] for result in results} == {4}
-    assert all(result["wrong_vs_golden"] == 0 for result in results)
+    results = [json.loads(line) for line in (output / "soak" / "results.jsonl").read_text().splitlines()]
+    assert [result["seed"] for result in results] == list(seeds)
+    assert {result["reflections"] for result in results} >= reflections
+    assert all(result["pixels"] == pixels and result["wrong_vs_golden"] == 0 for result in results)
 
 
 @pytest.mark.parametrize("engine", ENGINES)

@@ -110,7 +110,7 @@ def test_a_design_that_hangs_is_reported(tmp_path: Path):
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
-        (("--cases", "0"), "error: cases: must be 1 or more"),
+        (("--cases", "0"), "error: argument --cases: invalid positive value: '0'"),
         (("--engine", "exact", "--bus", "apb"), "error: bus: verify upsets drives the registers itself"),
     ],
 )

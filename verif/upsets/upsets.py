@@ -9,24 +9,14 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from rich.table import Table
-
 from raycaster.configuration import Configuration, configure, need_avalon
 from raycaster.convert.provenance import Provenance
-from raycaster.errors import UserError
-from raycaster.jobs import add_fresh_option, add_job_options, executors
-from raycaster.options import (
-    CommandParser,
-    add_build_option,
-    add_configuration_options,
-    command_line,
-    given_options,
-)
-from raycaster.outcomes import Check, add_keep_option, keep, scope_of
+from raycaster.options import CommandParser, given_options
+from raycaster.outcomes import Check, keep, scope_of
 from raycaster.outcomes import Outcome as Kept
-from raycaster.output import Console
+from raycaster.output import Console, Table
 from raycaster.sim.simulator import VERILATOR_FLAGS, convert
-from raycaster.verif.campaign import Campaign, run_campaign
+from raycaster.verif.campaign import Campaign, add_campaign_options, repeated, run_asked
 from raycaster.verif.upsets.bench import KINDS
 
 FLAGS = tuple(flag for flag in VERILATOR_FLAGS if flag != "--no-public-flat-rw")
@@ -55,37 +45,22 @@ def registers_of(files: Sequence[Path]) -> dict[str, tuple[str, ...]]:
 
 def show(results: Sequence[Mapping], seconds: float, configuration: Configuration, console: Console) -> None:
     """Print the outcomes of the cases, by kind."""
-    table = Table(title=f"{configuration.name}, {len(results)} cases in {seconds:.0f} s")
-    table.add_column("disturbance")
-    for heading in (
-        "cases",
-        "unseen",
-        "repaired by StartScreen",
-        "by a commit",
-        "never",
-        "frames wrong, at most",
-        "sync",
-    ):
-        table.add_column(heading, justify="right")
+    title = f"{configuration.name}, {len(results)} cases in {seconds:.0f} s"
+    repaired = "unseen", "repaired by StartScreen", "by a commit", "never"
+    table = Table("disturbance", "cases", *repaired, "frames wrong, at most", "sync", title=title)
     for kind in dict.fromkeys(KINDS):
         of_kind = [result for result in results if result["kind"] == kind]
         outcomes = Counter(result["outcome"] for result in of_kind)
         most = max((result["wrong"] for result in of_kind), default=0)
-        counts = [len(of_kind), *(outcomes[each] for each in OUTCOMES), most]
-        table.add_row(kind, *(f"{count:,}" for count in [*counts, sum(each["lost_sync"] for each in of_kind)]))
+        lost_sync = sum(each["lost_sync"] for each in of_kind)
+        table.add_row(kind, len(of_kind), *(outcomes[each] for each in OUTCOMES), most, lost_sync)
     console.print(table)
 
 
 def command_parser() -> CommandParser:
     """Build the parser of the command line."""
     parser = CommandParser("verify upsets", __doc__, "--engine exact --cases 200")
-    parser.add_argument("--cases", type=int, default=500, metavar="N", help="number of cases (default: %(default)s)")
-    parser.add_argument("--first", type=int, default=0, metavar="CASE", help="number of the first case (%(default)s)")
-    add_job_options(parser)
-    add_fresh_option(parser)
-    add_build_option(parser)
-    add_configuration_options(parser)
-    add_keep_option(parser)
+    add_campaign_options(parser, "cases", 500)
     return parser
 
 
@@ -122,28 +97,16 @@ CHECKS = (
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
-    if arguments.cases < 1 or arguments.first < 0:
-        raise UserError("cases: must be 1 or more, first: 0 or more")
-    configuration = _configuration(arguments)
+    configuration, console = _configuration(arguments), Console()
     need_avalon(configuration, "verify upsets")
-    console = Console()
     cases = range(arguments.first, arguments.first + arguments.cases)
     campaign = Campaign(
         "raycaster.verif.upsets.bench", configuration, cases, arguments.build / "upsets", arguments.build,
         flags=FLAGS, registers=registers_of(convert(configuration, arguments.build)), share=SHARE,
-        fresh=arguments.fresh,
     )  # fmt: skip
-    with executors(arguments.scheduler, arguments.jobs) as make_executor:
-        outcome = run_campaign(campaign, console, make_executor)
+    outcome = run_asked(campaign, arguments, console)
     results = outcome.results
     show(results, outcome.seconds, configuration, console)
-    for result in results:
-        if result["outcome"] == "hangs":
-            repeat = command_line(
-                "verify upsets", options={"cases": 1, "first": result["case"]} | given_options(arguments)
-            )
-            what = f"case {result['case']}: {result['kind']}, {result['where']}, clock {result['clock']:.0f}"
-            console.print(f"{what}: did not recover; repeat with: {repeat}", style="red", soft_wrap=True)
     figures = {"cases": len(results), "not_run": outcome.missing} | {
         kind: dict(Counter(result["outcome"] for result in results if result["kind"] == kind))
         for kind in dict.fromkeys(KINDS)
@@ -151,4 +114,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     figures["most_wrong"] = max((result["wrong"] for result in results), default=0)
     figures["lost_sync"] = sum(result["lost_sync"] for result in results)
     keep(arguments, figures, scope_of(configuration), provenance)
-    return outcome.verdict("cases", console)
+    hangs = [
+        f"case {one['case']}: {one['kind']}, {one['where']}, clock {one['clock']:.0f}: did not recover; "
+        + repeated("verify upsets", arguments, cases=1, first=one["case"])
+        for one in results
+        if one["outcome"] == "hangs"
+    ]
+    return outcome.verdict("cases", console, hangs)

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from beam_vectors import WALK, beam_config, flat_tables, products, word
-from vectors import AXES, any_place, ports
+from vectors import AXES, any_place, config_id, ports
 
 from raycaster.golden.rays import primary_slopes
 from raycaster.hdl.leaf import Leaf
@@ -14,7 +14,9 @@ from raycaster.rtl.common.records import growth_of, walk_of
 from raycaster.rtl.common.widths import DISTANCE_BITS, walk_bits
 
 
-@pytest.mark.parametrize("config", [beam_config(screen="tiny", pixels=2), beam_config(rows=180, scale=6, pixels=2)])
+@pytest.mark.parametrize(
+    "config", [beam_config(screen="tiny", pixels=2), beam_config(rows=180, scale=6, pixels=2)], ids=config_id
+)
 def test_lane_start(config, tmp_path, random):
     """A rectangle's products for a row's first two columns, from those of the first and the growth per column."""
     leaf = Leaf(lane_start, lambda: ports(
