@@ -41,7 +41,6 @@ def random_scene(seed: int, rectangles: int, reflections: int, looks: Collection
     style = style_of(seed)
     corners, camera = _corners(rng, style, rectangles)
     table = Rectangles(corners, rng.integers(256, size=(len(corners), 3)).astype(np.uint8), np.ones(len(corners), bool))
-    colours = table.colours.tolist()
     bounces, background = int(rng.integers(reflections + 1)), tuple(rng.integers(256, size=3).tolist())
     if camera is None:
         camera = random_camera(rng, table)
@@ -54,10 +53,7 @@ def random_scene(seed: int, rectangles: int, reflections: int, looks: Collection
         background=background,
         camera=Camera(position=tuple(camera.tolist()), **angles),
         light=light,
-        rect=tuple(
-            Rectangle.model_validate({"corners": pair, "colour": tuple(colour), **_look(table, index, looks)})
-            for index, (pair, colour) in enumerate(zip(corners.tolist(), colours, strict=True))
-        ),
+        rect=tuple(rectangle_of(table, index, looks) for index in range(len(table))),
     )
 
 
@@ -67,15 +63,16 @@ def _angles(rng: np.random.Generator) -> dict[str, float]:
     return dict(zip(("yaw", "pitch", "roll"), np.where(rng.random(3) < 0.2, 0, some).tolist(), strict=True))
 
 
-def _look(table: Rectangles, index: int, looks: Collection[str]) -> dict[str, object]:
-    """Return the entries of a scene file for a rectangle's look."""
-    look: dict[str, object] = {}
+def rectangle_of(table: Rectangles, index: int, looks: Collection[str] = ()) -> Rectangle:
+    """Return a table's rectangle as in a scene file, with its look as far as the design has it."""
+    corners, colour = table.corners[index].tolist(), tuple(table.colours[index].tolist())
+    entries: dict[str, object] = {"corners": corners, "colour": colour}
     if "materials" in looks:
-        look["mirror"] = int(table.mirrors[index]) / 4
+        entries["mirror"] = int(table.mirrors[index]) / 4
     if "patterns" in looks and table.kinds[index]:
-        look |= {"pattern": PATTERNS[table.kinds[index]], "cell": int(table.cells[index])}
-        look["colour2"] = tuple(table.colours_2[index].tolist())
-    return look
+        entries |= {"pattern": PATTERNS[table.kinds[index]], "cell": int(table.cells[index])}
+        entries["colour2"] = tuple(table.colours_2[index].tolist())
+    return Rectangle.model_validate(entries)
 
 
 def _corners(rng: np.random.Generator, style: str, count: int) -> tuple[np.ndarray, np.ndarray | None]:

@@ -528,9 +528,9 @@ def complaints(results: list[Result], known: Mapping[str, Expectation]) -> list[
     found = []
     for module, of_module in by_module(results).items():
         mutants = [(result.recording, mutant) for result in of_module for mutant in result.mutants]
-        for recording, mutant in mutants:
+        for vectors, mutant in mutants:
             if mutant.outcome == "surviving":
-                found.append(f"{module}: survives the vectors of {recording}: {mutant}")
+                found.append(f"{module}: survives the vectors of {vectors}: {mutant}")
         if share_caught(of_module) < LEAST_CAUGHT:
             found.append(f"{module}: fewer than {LEAST_CAUGHT:.0%} of the mutants that differ are caught")
         explained = [str(mutant) for _, mutant in mutants if mutant.outcome == "explained"]

@@ -3,52 +3,40 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from vectors import check, check_fetches, driven, leaf_of
 
 from raycaster.configuration import WORLD_SIZE, Configuration
+from raycaster.golden.random_world import random_looks
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import bit, unsigned
-from raycaster.rtl.common.interfaces import GroupFate, Picture, Rects, ShadowPass, Steps
+from raycaster.rtl.common.interfaces import GroupFate, ShadowPass
 from raycaster.rtl.common.records import rect_of, surface_of
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
-from raycaster.verif.expected import TraceCycle, slot_length
+from raycaster.verif.expected import EARLY_OUT_AT, TraceCycle, ends_early, slot_length, sorted_rect, trace_cycles
 
 
 def control_leaf(function: Callable, config: Configuration, directory: Path) -> Leaf:
     """Build a leaf of ray_control, exact_control, or the ray_sequencer in either of them."""
-    write_at = slot_length(config) + 3 if config.facts.divides else 2
-    arguments = {"offered": partial(rect_of if config.facts.divides else surface_of, config)}
+    ports: dict[str, Any] = {"fate": lambda: GroupFate(config)}
     if function is ray_sequencer:
-        arguments = {"in_flight": lambda: unsigned(write_at + 1), "early_out": bit, "shadow_pass": ShadowPass}
-    return Leaf(
-        function,
-        lambda: {
-            "clk": bit(),
-            "reset_ray_caster": bit(),
-            "enable": bit(),
-            "picture": Picture(),
-            "rects": Rects(config),
-            "steps": Steps(),
-            "fate": GroupFate(config),
-            **{name: make() for name, make in arguments.items()},
-            "done": bit(),
-            **({"slot_cycles": slot_length(config)} if function is ray_sequencer else {}),
-            "config": config,
-        },
-        directory,
-    )
+        write_at = slot_length(config) + 3 if config.facts.divides else 2
+        ports |= {"in_flight": write_at + 1, "shadow_pass": ShadowPass, "slot_cycles": lambda: slot_length(config)}
+    else:
+        ports["offered"] = partial(rect_of if config.facts.divides else surface_of, config)
+    return leaf_of(function, directory, config, **ports)
 
 
-def usable_masks(random: np.random.Generator, count: int, some: int) -> list[int]:
-    """Return masks of usable rectangles: all, none, each alone, each with the first, and `some` random ones."""
+def usable_masks(random: np.random.Generator, count: int) -> list[int]:
+    """Return masks of usable rectangles: all, none, each alone, each with the first, and random ones."""
     every = (1 << count) - 1
     masks = [every, 0, 1, 1 << (count - 1), every]
-    masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(some)]
+    masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(24)]
     return masks + [1 << index for index in range(count)] + [1 | 1 << index for index in range(count)]
 
 
@@ -92,6 +80,80 @@ def group_fate_in(random: np.random.Generator, cycle: TraceCycle, leaf: Leaf) ->
 def mask_of(indices: Sequence[int]) -> int:
     """Return a mask with a bit set for each index."""
     return sum(1 << index for index in indices)
+
+
+def in_flight(stimulus: list[dict[str, int]], starts: list[int], cycle: int, width: int) -> int:
+    """Return the tests in flight: bit i follows find_intersection by i + 1 cycles, unless a reset came between."""
+    before = range(cycle - 1, cycle - width - 1, -1)
+    resets = [stimulus[one]["reset_ray_caster"] for one in before]
+    alive = [starts[one] for one in before][: resets.index(1) if 1 in resets else width]
+    # A test that ended early is not in flight from the next cycle on.
+    for place in range(EARLY_OUT_AT, len(alive)):
+        alive[place] &= not stimulus[cycle - 1 - place + EARLY_OUT_AT].get("early_out", 0)
+    return sum(bit << place for place, bit in enumerate(alive))
+
+
+def check_control(function: Callable, config: Configuration, tmp_path, random) -> None:
+    """Check the control in rows of random fates, some of which are abandoned."""
+    leaf = control_leaf(function, config, tmp_path)
+    count = config.rectangles
+    masks, table = usable_masks(random, count), flat_rectangles(random, count)
+    table = random_looks(random, table)
+    quiet = {name: 0 for name in leaf.outputs if name.startswith("steps_") and name != "steps_initial_ray"}
+    quiet["done"] = 0
+    stimulus, expected, on_port, offers, starts = [], [], {}, [], []
+
+    def drive(inputs, wanted=None, cycle: TraceCycle | None = None):
+        if cycle is not None and cycle.current is not None:
+            on_port[len(stimulus)] = cycle.current
+        shown = on_port[len(stimulus)] if len(stimulus) in on_port else int(random.integers(count))
+        stimulus.append(inputs | sorted_rect(table, shown, "rects_rect", config))
+        offered = cycle.offered if cycle is not None else None
+        if offered is not None:
+            offers.append(len(stimulus) - 1)
+            rect = sorted_rect(table, offered, "offered", config)
+            wanted = wanted | {name: value for name, value in rect.items() if name in leaf.seen}
+        starts.append(wanted["steps_find_intersection"] if wanted else 0)
+        expected.append(wanted)
+
+    for number, mask in enumerate(masks):
+        usable = [index for index in range(count) if mask >> index & 1]
+        reflections = config.reflections if number < 2 else int(random.integers(config.reflections + 1))
+        held = {"rects_usable": mask, "picture_reflections": reflections, "reset_ray_caster": 0}
+        fate = random_fate(random, usable, reflections, number)
+        # Unusable rectangles are not visited, whatever the mask says.
+        held["fate_may_hit"] = mask_of(fate["may_hit"]) | int(random.integers(1 << count)) & ~mask
+        for _ in range(2):
+            drive({**held, "reset_ray_caster": 1, "enable": int(random.integers(2))})
+        for _ in range(int(random.integers(3))):
+            drive({**held, "enable": 0}, quiet)
+        drive({**held, "enable": 1}, quiet)
+        trace = trace_cycles(config, usable, reflections, **fate)
+        if number == 0:
+            assert len(trace) + 3 == config.group_cycles, "including done and the two cycles of reset"
+        # A row may be abandoned at any moment; results in flight must not appear later.
+        abandoned = number > 4 and number % 2
+        last = int(random.integers(len(trace))) if abandoned else None
+        for before, cycle in pairwise([TraceCycle({}, 0), *trace][:last]):
+            wanted = {name: value for name, value in cycle.steps.items() if name in leaf.outputs} | {"done": 0}
+            if cycle.steps["steps_screen_to_ray"]:
+                del wanted["steps_initial_ray"]
+            inputs = {**held, "enable": int(random.integers(2))}
+            if function is ray_sequencer:
+                inputs["early_out"] = int(ends_early(config) and before.towards == 0)
+            drive(inputs | group_fate_in(random, cycle, leaf), wanted, cycle)
+        if not abandoned:
+            for _ in range(int(random.integers(1, 4))):
+                # Rendering is over, so reflections may change.
+                after = {"picture_reflections": int(random.integers(config.reflections + 1))}
+                drive({**held, **after, "enable": int(random.integers(2))}, {**quiet, "done": 1})
+    if function is ray_sequencer:
+        width = leaf.seen["in_flight"].width
+        for cycle, wanted in enumerate(expected):
+            if wanted is not None and cycle >= width:
+                expected[cycle] = {**wanted, "in_flight": in_flight(stimulus, starts, cycle, width)}
+    outputs = check(leaf, driven(leaf, stimulus), expected, settled=offers[0])
+    check_fetches(outputs, on_port, "rects_", settled=offers[0])
 
 
 def margin_of(config: Configuration) -> int:

@@ -7,6 +7,7 @@ from fractions import Fraction
 from functools import partial
 
 import numpy as np
+from definition import exact_hit
 
 from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE, Configuration
 from raycaster.golden.engines import model_of
@@ -188,17 +189,18 @@ def pixel_word(config: Configuration, colour) -> int:
     return word
 
 
-def pixel_of(config: Configuration, output: dict[str, int]) -> int:
-    """Return the word of `pixel_word` from a leaf's output `Pixel` named pixel."""
-    return sum(
-        output[f"pixel_{name}"] << place * config.colour_bits for place, name in enumerate(("blue", "green", "red"))
-    )
+def pixel_ports(config: Configuration, *colours) -> dict[str, int]:
+    """Return the port of the pixels of one clock, the left one in the lowest bits of each channel."""
+    bits = config.colour_bits
+    lanes = [[int(channel) >> CHANNEL_BITS - bits for channel in colour] for colour in colours]
+    channels = zip(("red", "green", "blue"), zip(*lanes, strict=True), strict=True)
+    return {f"pixel_{name}": sum(value << bits * lane for lane, value in enumerate(of)) for name, of in channels}
 
 
 def verdict(
-    table: Rectangles, index: int, eye, slope, mirror, met: Collection[int] = (0, 1, 2)
-) -> tuple[bool, int, int]:
-    """Apply the definition, in fractions: return hit, n and e.
+    table: Rectangles, index: int, eye, slope, mirror: tuple[int, int] | None, met: Collection[int]
+) -> tuple[bool, int, int, bool]:
+    """Apply the definition to a ray that seems to come from a mirrored eye.
 
     Args:
         table: sorted rectangles.
@@ -206,18 +208,17 @@ def verdict(
         eye: mirrored starting point of the ray.
         slope: slope with signs.
         mirror: axis and coordinate of the plane that the ray left last, or None.
-        met: axes of all mirrors met in the point that the ray left last; by default nothing can be hit there.
+        met: axes of all mirrors met in the point that the ray left last.
+
+    Returns:
+        True for a hit, n and e of t = n / e, and True for a hit in the point that the ray left last.
     """
     axis = int(table.axes[index])
-    if slope[axis] == 0:
-        return False, 0, 0
-    t = Fraction(int(table.low[index, axis] - eye[axis]), int(slope[axis]))
-    point = [int(eye[u]) + int(slope[u]) * t for u in range(3)]
-    hit = t > 0 and all(table.low[index, u] <= point[u] <= table.high[index, u] for u in OTHER_AXES[axis])
-    if mirror is not None:
-        beyond = (point[mirror[0]] - mirror[1]) * int(slope[mirror[0]])
-        hit = hit and (beyond > 0 or (beyond == 0 and axis not in met))
-    return hit, abs(int(table.low[index, axis] - eye[axis])), abs(int(slope[axis]))
+    start = Fraction(int(mirror[1] - eye[mirror[0]]), int(slope[mirror[0]])) if mirror else 0
+    origin = [int(place) + int(way) * start for place, way in zip(eye, slope, strict=True)]
+    hit = exact_hit(table, index, origin, [int(way) for way in slope], frozenset(met) if mirror else None)
+    n, e = abs(int(table.low[index, axis] - eye[axis])), abs(int(slope[axis]))
+    return hit is not None, n, e, hit is not None and hit[0] == 0
 
 
 def beside(random: np.random.Generator, place: int) -> int:

@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from fractions import Fraction
 
 import numpy as np
 import pytest
-from definition import follow, pixel
+from definition import compare, follow, pixel
 
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.random_world import (
@@ -64,20 +63,11 @@ def test_traces_as_fractions_do(world, reflections):
         for ray, slope in enumerate(slopes.tolist()):
             context = f"table {number}, ray {ray}: camera {camera.tolist()}, slope {slope}, {light}; {repeat()}"
             path = follow(table, BACKGROUND, camera.tolist(), slope, reflections, light)
-            winners = [stop.winner for stop in path] + [-1] * (reflections + 1 - len(path))
-            assert [int(winner[ray]) for winner in trace.winners] == winners, context
-            assert [seen[ray].tolist() for seen in trace.seen[: len(path)]] == [list(s.colour) for s in path], context
+            compare(trace, ray, path)
             for bounce, stop in zip(trace.bounces, path, strict=False):
                 assert bounce.alive[ray], context
                 assert set(np.flatnonzero(bounce.met[ray])) == ({0, 1, 2} if stop.met is None else stop.met), context
-                assert bounce.hits[:, ray].tolist() == [point is not None for point in stop.points], context
-                for index, point in enumerate(stop.points):
-                    if point:
-                        denominator = int(bounce.denominators[index, ray])
-                        stored = [Fraction(int(p), denominator) for p in bounce.points[index, ray]]
-                        assert stored == point, f"rectangle {index}, {context}"
             assert not any(bounce.alive[ray] for bounce in trace.bounces[len(path) :]), context
-            assert trace.colours[ray].tolist() == pixel(path), context
             for shading, stop in zip(trace.shadings, path, strict=False):
                 shaded[bool(shading.lit[ray]), stop.winner >= 0] += 1
             longest = max(longest, sum(stop.winner >= 0 for stop in path))
@@ -201,12 +191,3 @@ def test_reflections_are_the_scenes_unless_given():
         [(0x80 + 0xFF) >> 1, (0x40 + 0xFF) >> 1, (0x20 + 0xFF) >> 1],
         [(0x100 + 0x1FE) >> 2, (0x80 + 0x1FE) >> 2, (0x40 + 0x1FE) >> 2],
     ]
-
-
-def test_lower_index_wins_a_tie():
-    wall = ((100, 0, 0), (100, 511, 511))
-    for order in ([0, 1], [1, 0]):
-        colours = np.array([(1, 1, 1), (2, 2, 2)], dtype=np.uint8)[order]
-        rectangles = Rectangles(np.array([wall, wall]), colours, np.ones(2, dtype=bool))
-        trace = ExactModel().trace(rectangles, (0, 5, 5), (0, 0, 0), [(100, 0, 0)], 0)
-        assert trace.colours.tolist() == [colours[0].tolist()]

@@ -4,15 +4,14 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import BUILD, ROOT, SMALL_SCENE, Bench
+from conftest import BUILD, ROOT, SMALL_SCENE, Bench, called
 from PIL import Image
 
-from raycaster.configuration import configure
+from raycaster.configuration import Configuration, configure
 from raycaster.design import packaged_for
 from raycaster.engines import ENGINES
 from raycaster.golden.exact import ExactModel
@@ -21,11 +20,29 @@ from raycaster.scene import load_scene, packaged_scenes
 PLAIN = packaged_scenes(plain=True)
 
 
+def drawn(bench: Bench, design: Configuration, scene: Path) -> tuple[dict, Path]:
+    """Draw a scene in Verilator without a wrong or a late pixel; return the result, and the directory with it."""
+    directory = bench("sim.frame_bench", design, "verilator", scene)
+    result = json.loads((directory / "result.json").read_text())
+    size = design.screen_geometry.horizontal.visible * design.screen_geometry.vertical.visible
+    assert (result["pixels"], result["wrong_vs_golden"], result["underrun"]) == (size, 0, False), scene.stem
+    return result, directory
+
+
 @pytest.mark.slow_sets(quick=["boxes"])
-@pytest.mark.parametrize("scene", PLAIN.values(), ids=PLAIN)
-def test_full_size(bench: Bench, scene):
-    """Every scene that the default design can draw, as `make sim` shows it."""
-    check_full_size(bench, scene, "seed")
+@pytest.mark.parametrize(
+    ("engine", "scene"),
+    [*(("seed", path) for path in PLAIN.values()), ("exact", PLAIN["mirror_room"])],
+    ids=[*PLAIN, "exact"],
+)
+def test_full_size(bench: Bench, engine, scene):
+    """Every scene that the default design can draw, and one in the exact engine, as `make sim` shows them."""
+    contents = load_scene(scene)
+    design = configure(engine=engine, rows=contents.rows, reflections=contents.reflections)
+    result, _ = drawn(bench, design, scene)
+    assert result["pixels"] == 640 * 2 * contents.rows
+    assert result["worst_group_cycles"] <= design.group_budget
+    assert result["worst_row_cycles"] < design.screen_geometry.row_cycles
 
 
 @pytest.mark.slow_sets("beam", "seed")
@@ -37,17 +54,8 @@ def test_scenes_with_looks(bench: Bench, engine):
     # The fewest units that meet the row budget compile fastest.
     size = {"units": 16} if engine == "seed" else {}
     looks = dict.fromkeys(ENGINES[engine].looks, True)
-    design = configure(engine=engine, screen="tiny", reflections=2, **looks, **size)
     for scene in scenes:
-        result = json.loads((bench("sim.frame_bench", design, "verilator", scene) / "result.json").read_text())
-        assert (result["pixels"], result["wrong_vs_golden"]) == (128 * 96, 0), scene.stem
-        assert not result["underrun"], scene.stem
-
-
-@pytest.mark.slow
-def test_full_size_exact(bench: Bench):
-    """The mirror room, as `make sim ENGINE=exact` shows it."""
-    check_full_size(bench, ROOT / "scenes" / "mirror_room.toml", "exact")
+        drawn(bench, configure(engine=engine, screen="tiny", reflections=2, **looks, **size), scene)
 
 
 @pytest.mark.slow
@@ -57,29 +65,15 @@ def test_full_size_exact(bench: Bench):
 )
 def test_full_size_beam(bench: Bench, rows, scale, pixels, shown):
     """The room as `make sim ENGINE=beam` shows it: doubled, native, 720 lines, and 1080 with two pixels per clock."""
-    configuration = configure(engine="beam", rows=rows, scale=scale, pixels=pixels)
-    scene = ROOT / "scenes" / "mirror_room.toml"
-    directory = bench("sim.frame_bench", configuration, "verilator", scene)
-    result = json.loads((directory / "result.json").read_text())
-    assert (result["pixels"], result["wrong_vs_golden"]) == (shown, 0)
-    assert result["worst_row_cycles"] == configuration.screen_geometry.horizontal.visible // pixels
+    design, scene = configure(engine="beam", rows=rows, scale=scale, pixels=pixels), PLAIN["mirror_room"]
+    result, directory = drawn(bench, design, scene)
+    assert result["pixels"] == shown
+    assert result["worst_row_cycles"] == design.screen_geometry.horizontal.visible // pixels
     assert result["worst_group_cycles"] == 1
     # The finer picture samples the same view, so it contains every pixel of the coarse one.
     coarse = ExactModel().render(load_scene(scene), configure(engine="beam", rows=rows, scale=1).screen_geometry)
-    step = configuration.screen_geometry.horizontal.visible // 320
+    step = design.screen_geometry.horizontal.visible // 320
     assert np.array_equal(np.asarray(Image.open(directory / "frame.png"))[::step, ::step], coarse)
-
-
-def check_full_size(bench: Bench, scene, engine: str) -> dict:
-    contents = load_scene(scene)
-    configuration = configure(engine=engine, rows=contents.rows, reflections=contents.reflections)
-    result = json.loads((bench("sim.frame_bench", configuration, "verilator", scene) / "result.json").read_text())
-    assert result["pixels"] == 640 * 2 * configuration.rows
-    assert result["wrong_vs_golden"] == 0
-    assert not result["underrun"]
-    assert result["worst_group_cycles"] <= configuration.group_budget
-    assert result["worst_row_cycles"] < configuration.screen_geometry.row_cycles
-    return result
 
 
 @pytest.mark.slow
@@ -87,14 +81,13 @@ def check_full_size(bench: Bench, scene, engine: str) -> dict:
 def test_tiny_in_icarus(engine):
     """The command draws the tiny screen in Icarus, with zero, one and two reflections and with edge cases."""
     build = BUILD / "test" / f"tiny_in_icarus_{engine}"
-    scenes = [ROOT / "scenes" / f"{name}.toml" for name in ("matte", "corners", "degenerate", "facing_mirrors")]
+    names = ("matte", "corners", "degenerate", "facing_mirrors")
     options = ("--engine", engine, "--screen", "tiny", "--simulator", "icarus", "--build", str(build))
-    options += tuple(map(str, scenes))
-    subprocess.run([sys.executable, "-m", "raycaster.cli", "sim", *options], cwd=ROOT, check=True)
-    for scene in scenes:
-        result = json.loads((build / f"sim-{engine}-tiny" / scene.stem / "result.json").read_text())
-        assert result["pixels"] == 128 * 96
-        assert result["wrong_vs_golden"] == 0
+    done = called("sim", *options, *(str(PLAIN[name]) for name in names), cwd=ROOT)
+    assert not done.returncode, done.stderr
+    for name in names:
+        result = json.loads((build / f"sim-{engine}-tiny" / name / "result.json").read_text())
+        assert (result["pixels"], result["wrong_vs_golden"]) == (128 * 96, 0)
 
 
 @pytest.mark.slow_sets(

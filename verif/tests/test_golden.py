@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from definition import follow, pixel
+from definition import compare, follow
 from generated import World, examples, worlds
 from hypothesis import given
 from hypothesis import strategies as st
@@ -47,9 +47,17 @@ def test_exact_traces_as_fractions_do(world, reflections):
     traced = ExactModel().trace(table, camera, BACKGROUND, slopes, reflections)
     for ray, slope in enumerate(slopes.tolist()):
         path = follow(table, BACKGROUND, camera.tolist(), slope, reflections)
-        winners = [stop.winner for stop in path] + [-1] * (reflections + 1 - len(path))
-        assert [int(winner[ray]) for winner in traced.winners] == winners
-        assert traced.colours[ray].tolist() == pixel(path)
+        compare(traced, ray, path)
+
+
+@of_each
+@pytest.mark.parametrize("order", [[0, 1], [1, 0]])
+def test_lower_index_wins_a_tie(trace, order):
+    """The first of two equal rectangles is seen."""
+    colours = np.array([(1, 1, 1), (2, 2, 2)], dtype=np.uint8)[order]
+    corners = np.array([((100, 0, 0), (100, 511, 511))] * 2)
+    traced = trace(Rectangles(corners, colours, np.ones(2, dtype=bool)), (0, 5, 5), BACKGROUND, [(100, 0, 0)], 0)
+    assert traced.colours.tolist() == [colours[0].tolist()]
 
 
 @of_each

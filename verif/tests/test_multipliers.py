@@ -14,7 +14,7 @@ from myhdl import Signal, always, always_comb, block, instances, intbv
 
 from raycaster.fpga.multipliers import connect_register, register_products
 from raycaster.hdl.leaf import Leaf
-from raycaster.rtl.common.widths import bit
+from raycaster.hdl.signals import bit
 from raycaster.sim.netlist import LIBRARIES, cell_models, find_yosys
 from raycaster.tools import run_yosys
 from raycaster.verif.formal.prover import missing_tools

@@ -33,7 +33,6 @@ CORNERS = "[[0, 0, 0], [511, 511, 0]]"
 TOP_KEYS = "title, rows, reflections, background, camera, light, rect"
 LIGHT_KEYS = "position, shade"
 CAMERA_KEYS = "position, yaw, pitch, roll"
-TWOS = "2" * 54 + " (Expected '=' after a key in a key/value pair)"
 RECT_KEYS = "corners, colour, name, mirror, pattern, colour2, cell"
 
 
@@ -80,110 +79,140 @@ def test_rows_that_a_file_may_ask_for(tmp_path, rows):
     assert load_scene(write(tmp_path, changed("rows = 240", f"rows = {rows}"))).rows == rows
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "expected"),
-    [
-        # Unknown keys; the error reports the mistyped key rather than the missing one.
-        ("title", "titel", f"titel: is not a key of scene files; the keys here are {TOP_KEYS}"),
-        ("title", '"ti\\ntle"', f'"ti\\ntle": is not a key of scene files; the keys here are {TOP_KEYS}'),
-        ("[[rect]]", "[[rects]]", f"rects: is not a key of scene files; the keys here are {TOP_KEYS}"),
-        ("position", "angle", f"camera.angle: is not a key of scene files; the keys here are {CAMERA_KEYS}"),
-        ("colour", "color", f'rect[0] ("floor") color: is not a key of scene files; the keys here are {RECT_KEYS}'),
-        ("name", "nam", f"rect[0].nam: is not a key of scene files; the keys here are {RECT_KEYS}"),
-        # Numbers out of range or of another kind.
-        ("256", "512", "camera.position[1]: must be a whole number 0..511, not 512"),
-        ("256", "-1", "camera.position[1]: must be a whole number 0..511, not -1"),
-        ("256", "2.5", "camera.position[1]: must be a whole number 0..511, not 2.5"),
-        ("256", "256.0", "camera.position[1]: must be a whole number 0..511, not 256.0"),
-        ("256", "true", "camera.position[1]: must be a whole number 0..511, not true"),
-        ("256", '"256"', 'camera.position[1]: must be a whole number 0..511, not "256"'),
-        ("511, 0]]", "512, 0]]", 'rect[0] ("floor") corners[1][1]: must be a whole number 0..511, not 512'),
-        ("reflections = 1", "reflections = 5", "reflections: must be a whole number 0..4, not 5"),
-        ("reflections = 1", "reflections = 1.0", "reflections: must be a whole number 0..4, not 1.0"),
-        ("rows = 240", "rows = 239", "rows: must be 240, 200 or 180, not 239"),
-        ("rows = 240", "rows = 240.0", "rows: must be 240, 200 or 180, not 240.0"),
-        ("rows = 240", 'rows = "240"', 'rows: must be 240, 200 or 180, not "240"'),
-        # Wrong types and shapes.
-        ("[20, 256, 100]", "20", "camera.position: must be a point, [x, y, z], not 20"),
-        ("[20, 256, 100]", "[20, 256]", "camera.position: must be a point, [x, y, z], not [20, 256]"),
-        ("[20, 256, 100]", "[1, 2, 3, 4]", "camera.position: must be a point, [x, y, z], not [1, 2, 3, 4]"),
-        (CAMERA, "", "camera: is missing"),
-        (CAMERA, CAMERA + "[light]\n", "light.position: is missing"),
-        (CAMERA, CAMERA + LIGHT.replace("3", "512"), "light.position[2]: must be a whole number 0..511, not 512"),
-        (CAMERA, CAMERA + LIGHT + "shade = 1\n", "light.shade: must be 0, 0.25, 0.5 or 0.75, not 1"),
-        (
-            CAMERA,
-            CAMERA + LIGHT + "dim = 1\n",
-            f"light.dim: is not a key of scene files; the keys here are {LIGHT_KEYS}",
-        ),
-        (CAMERA, "light = 3\n" + CAMERA, "light: must be a table, not 3"),
-        (CAMERA, "[camera]\n", "camera.position: is missing"),
-        ("[camera]\nposition = [20, 256, 100]", "[[camera]]", "camera: must be a table, not [{}]"),
-        (
-            CORNERS,
-            "[[0, 0, 0]]",
-            'rect[0] ("floor") corners: must be two opposite corners, [[x, y, z], [x, y, z]], not [[0, 0, 0]]',
-        ),
-        (CORNERS, "[[0, 0, 0], 3]", 'rect[0] ("floor") corners[1]: must be a point, [x, y, z], not 3'),
-        (f"corners = {CORNERS}", "", 'rect[0] ("floor") corners: is missing'),
-        ("[[rect]]", "[rect]", "rect: must be one or more tables, each headed [[rect]]"),
-        (RECT, "", "rect: is missing"),
-        ('"floor"', "7", "rect[0].name: must be a string in quotes, not 7"),
-        ('"A floor"', "2020-01-01", 'title: must be a string in quotes, not "2020-01-01"'),
-        # No plane; a name with a line break still gives a one-line message.
-        (
-            CORNERS,
-            "[[0, 0, 0], [511, 511, 1]]",
-            'rect[0] ("floor") corners: must have the same x, y or z in both corners, the rectangle\'s plane, '
-            "not [[0, 0, 0], [511, 511, 1]]",
-        ),
-        (
-            '"floor"\ncorners',
-            '"fl\\noor"\ncorner',
-            f'rect[0] ("fl\\noor") corner: is not a key of scene files; the keys here are {RECT_KEYS}',
-        ),
-        # Colours.
-        ("#c8c8b4", "#c8c8b", 'rect[0] ("floor") colour: must be a colour such as "#c8c8b4", not "#c8c8b"'),
-        ("#c8c8b4", "beige", 'rect[0] ("floor") colour: must be a colour such as "#c8c8b4", not "beige"'),
-        ('"#c8c8b4"', "[1, 2, 3]", 'rect[0] ("floor") colour: must be a colour such as "#c8c8b4", not [1, 2, 3]'),
-        ('"#000000"', "0", 'background: must be a colour such as "#c8c8b4", not 0'),
-        # Angles and looks.
-        ("100]", "100]\nyaw = 361", "camera.yaw: must be an angle in degrees, -360..360, not 361"),
-        ("100]", "100]\npitch = nan", "camera.pitch: must be an angle in degrees, -360..360, not NaN"),
-        ("100]", "100]\nroll = true", "camera.roll: must be an angle in degrees, -360..360, not true"),
-        ("100]", '100]\nyaw = "90"', 'camera.yaw: must be an angle in degrees, -360..360, not "90"'),
-        ('b4"', 'b4"\nmirror = 0.3', 'rect[0] ("floor") mirror: must be 0, 0.25, 0.5, 0.75 or 1, not 0.3'),
-        ('b4"', 'b4"\nmirror = true', 'rect[0] ("floor") mirror: must be 0, 0.25, 0.5, 0.75 or 1, not true'),
-        (
-            'b4"',
-            'b4"\npattern = "dots"',
-            'rect[0] ("floor") pattern: must be "plain", "checker", "rows" or "columns", not "dots"',
-        ),
-        (
-            'b4"',
-            'b4"\npattern = "rows"\ncolour2 = "#000000"\ncell = 48',
-            'rect[0] ("floor") cell: must be 8, 16, 32, 64, 128 or 256, not 48',
-        ),
-        ('b4"', 'b4"\npattern = "rows"', 'rect[0] ("floor"): a pattern has a second colour; give colour2 with rows'),
-        (
-            'b4"',
-            'b4"\ncolour2 = "#000000"',
-            'rect[0] ("floor"): colour2 is for a pattern; give pattern = "checker", "rows" or "columns"',
-        ),
-        # Not TOML.
-        (RECT, 2 * SINGLE, "is not TOML at line 11: [rect] (head each rectangle with [[rect]])"),
-        (RECT, SINGLE + RECT, "is not TOML at line 11: [[rect]] (head each rectangle with [[rect]])"),
-        (RECT, RECT + SINGLE, "is not TOML at line 11: [rect] (head each rectangle with [[rect]])"),
-        ("rows = 240", " rows = ", "is not TOML at line 2: rows = (Invalid value)"),
-        ("rows = 240", "rows: 2", "is not TOML at line 2: rows: 2 (Expected '=' after a key in a key/value pair)"),
-        ("rows = 240", "rows = \u2028", "is not TOML at line 2 (Invalid value)"),
-        ('"#c8c8b4"\n', "[1, #\n\n", "is not TOML at line 10: colour = [1, # (Invalid value)"),
-        ("rows = 240", f"rows: {'2' * 54}", "is not TOML at line 2: rows: " + TWOS),
-        ("rows = 240", f"rows: {'2' * 55}", "is not TOML at line 2 (Expected '=' after a key in a key/value pair)"),
-    ],
-)
+FLOOR = 'rect[0] ("floor")'
+POINT = "must be a point, [x, y, z], not"
+TABLES = "must be one or more tables, each headed [[rect]]"
+PLANE = "must have the same x, y or z in both corners, the rectangle's plane, not"
+NO_VALUE = "(Expected '=' after a key in a key/value pair)"
+HEADS = "(head each rectangle with [[rect]])"
+
+MISTAKES = [
+    # Unknown keys; the error reports the mistyped key rather than the missing one.
+    *(
+        (old, new, f"{place}: is not a key of scene files; the keys here are {keys}")
+        for old, new, place, keys in (
+            ("title", "titel", "titel", TOP_KEYS),
+            ("title", '"ti\\ntle"', '"ti\\ntle"', TOP_KEYS),
+            ("[[rect]]", "[[rects]]", "rects", TOP_KEYS),
+            ("position", "angle", "camera.angle", CAMERA_KEYS),
+            ("colour", "color", f"{FLOOR} color", RECT_KEYS),
+            ("name", "nam", "rect[0].nam", RECT_KEYS),
+            # A name with a line break still gives a one-line message.
+            ('"floor"\ncorners', '"fl\\noor"\ncorner', 'rect[0] ("fl\\noor") corner', RECT_KEYS),
+            (CAMERA, CAMERA + LIGHT + "dim = 1\n", "light.dim", LIGHT_KEYS),
+        )
+    ),
+    # Numbers out of range or of another kind.
+    *(
+        ("256", value, f"camera.position[1]: must be a whole number 0..511, not {value}")
+        for value in ("512", "-1", "2.5", "256.0", "true", '"256"')
+    ),
+    *(
+        ("reflections = 1", f"reflections = {value}", f"reflections: must be a whole number 0..4, not {value}")
+        for value in ("5", "1.0")
+    ),
+    *(
+        ("rows = 240", f"rows = {value}", f"rows: must be 240, 200 or 180, not {value}")
+        for value in ("239", "240.0", '"240"')
+    ),
+    ("511, 0]]", "512, 0]]", f"{FLOOR} corners[1][1]: must be a whole number 0..511, not 512"),
+    (CAMERA, CAMERA + LIGHT.replace("3", "512"), "light.position[2]: must be a whole number 0..511, not 512"),
+    # Wrong types and shapes.
+    *(
+        ("[20, 256, 100]", value, f"camera.position: {POINT} {value}")
+        for value in ("20", "[20, 256]", "[1, 2, 3, 4]")
+    ),
+    (CAMERA, "", "camera: is missing"),
+    (CAMERA, CAMERA + "[light]\n", "light.position: is missing"),
+    (CAMERA, CAMERA + LIGHT + "shade = 1\n", "light.shade: must be 0, 0.25, 0.5 or 0.75, not 1"),
+    (CAMERA, "light = 3\n" + CAMERA, "light: must be a table, not 3"),
+    (CAMERA, "[camera]\n", "camera.position: is missing"),
+    ("[camera]\nposition = [20, 256, 100]", "[[camera]]", "camera: must be a table, not [{}]"),
+    (CORNERS, "[[0, 0, 0]]", f"{FLOOR} corners: must be two opposite corners, [[x, y, z], [x, y, z]], not [[0, 0, 0]]"),
+    (CORNERS, "[[0, 0, 0], 3]", f"{FLOOR} corners[1]: {POINT} 3"),
+    (f"corners = {CORNERS}", "", f"{FLOOR} corners: is missing"),
+    (CORNERS, "[[0, 0, 0], [511, 511, 1]]", f"{FLOOR} corners: {PLANE} [[0, 0, 0], [511, 511, 1]]"),
+    ("[[rect]]", "[rect]", f"rect: {TABLES}"),
+    (RECT, "", "rect: is missing"),
+    ('"floor"', "7", "rect[0].name: must be a string in quotes, not 7"),
+    ('"A floor"', "2020-01-01", 'title: must be a string in quotes, not "2020-01-01"'),
+    # Colours.
+    *(
+        ('"#c8c8b4"', value, f'{FLOOR} colour: must be a colour such as "#c8c8b4", not {value}')
+        for value in ('"#c8c8b"', '"beige"', "[1, 2, 3]")
+    ),
+    ('"#000000"', "0", 'background: must be a colour such as "#c8c8b4", not 0'),
+    # Angles and looks.
+    *(
+        ("100]", f"100]\n{name} = {value}", f"camera.{name}: must be an angle in degrees, -360..360, not {shown}")
+        for name, value, shown in (
+            ("yaw", "361", "361"), ("pitch", "nan", "NaN"), ("roll", "true", "true"), ("yaw", '"90"', '"90"'),
+        )
+    ),
+    *(
+        ('b4"', f'b4"\n{lines}', f"{FLOOR}{said}")
+        for lines, said in (
+            ("mirror = 0.3", " mirror: must be 0, 0.25, 0.5, 0.75 or 1, not 0.3"),
+            ("mirror = true", " mirror: must be 0, 0.25, 0.5, 0.75 or 1, not true"),
+            ('pattern = "dots"', ' pattern: must be "plain", "checker", "rows" or "columns", not "dots"'),
+            (
+                'pattern = "rows"\ncolour2 = "#000000"\ncell = 48',
+                " cell: must be 8, 16, 32, 64, 128 or 256, not 48",
+            ),
+            ('pattern = "rows"', ": a pattern has a second colour; give colour2 with rows"),
+            ('colour2 = "#000000"', ': colour2 is for a pattern; give pattern = "checker", "rows" or "columns"'),
+        )
+    ),
+    # Not TOML.
+    *(
+        (old, new, f"is not TOML at line {where}")
+        for old, new, where in (
+            (RECT, 2 * SINGLE, f"11: [rect] {HEADS}"),
+            (RECT, SINGLE + RECT, f"11: [[rect]] {HEADS}"),
+            (RECT, RECT + SINGLE, f"11: [rect] {HEADS}"),
+            ("rows = 240", " rows = ", "2: rows = (Invalid value)"),
+            ("rows = 240", "rows: 2", f"2: rows: 2 {NO_VALUE}"),
+            ("rows = 240", "rows = \u2028", "2 (Invalid value)"),
+            ('"#c8c8b4"\n', "[1, #\n\n", "10: colour = [1, # (Invalid value)"),
+            ("rows = 240", f"rows: {'2' * 54}", f"2: rows: {'2' * 54} {NO_VALUE}"),
+            ("rows = 240", f"rows: {'2' * 55}", f"2 {NO_VALUE}"),
+        )
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "expected"), MISTAKES)
 def test_mistake(tmp_path, old, new, expected):
     assert complaint(write(tmp_path, changed(old, new))) == expected
+
+
+WITHOUT = GOOD.replace(RECT, "")
+
+
+@pytest.mark.timeout(10)
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("rect = []\n" + WITHOUT, f"rect: {TABLES}, not []"),
+        ("rect = [3]\n" + WITHOUT, "rect[0]: must be a table, not 3"),
+        # A rectangle without a name is named by its index.
+        (
+            GOOD + "[[rect]]\ncorners = [[1, 2, 3], [4, 5, 6]]\ncolour = '#000000'\n",
+            f"rect[1].corners: {PLANE} [[1, 2, 3], [4, 5, 6]]",
+        ),
+        # Long values are not shown; Python prints no numbers of more than a few thousand decimal digits.
+        (changed("#c8c8b4", "x" * 100), f'{FLOOR} colour: must be a colour such as "#c8c8b4"'),
+        (changed("rows = 240", "rows = 0x" + "f" * 4000), "rows: must be 240, 200 or 180"),
+        (GOOD.replace("rows = 240", "rows" + ".a" * 2000 + " = 1"), "rows: must be 240, 200 or 180"),
+        (GOOD + RECT * 40, "rect: 41 rectangles, but no hardware holds more than 32; remove some"),
+        # Slow files are refused at once.
+        ("a." * 50_000 + "a = 1\n" + GOOD, "has too many dots in a line; a key of a scene has one part"),
+        ("#" * 1_000_000 + GOOD, "is larger than 1,000,000 bytes, the limit for scene files; remove some of it"),
+    ],
+    ids=["empty", "number", "unnamed", "long", "digits", "deep", "many", "dots", "bytes"],
+)
+def test_mistake_in_the_whole_file(tmp_path, text, expected):
+    assert complaint(write(tmp_path, text), rectangles=12) == expected
 
 
 LOOKS = """\
@@ -241,53 +270,12 @@ def test_where_a_camera_looks(angles, basis):
     assert camera.turned == (basis != ((256, 0, 0), (0, 256, 0), (0, 0, 256)))
 
 
-def test_no_rectangles(tmp_path):
-    path = write(tmp_path, "rect = []\n" + GOOD.replace(RECT, ""))
-    assert complaint(path) == "rect: must be one or more tables, each headed [[rect]], not []"
-
-
-def test_rectangle_that_is_no_table(tmp_path):
-    path = write(tmp_path, "rect = [3]\n" + GOOD.replace(RECT, ""))
-    assert complaint(path) == "rect[0]: must be a table, not 3"
-
-
-def test_second_rectangle_is_named_by_its_index(tmp_path):
-    path = write(tmp_path, GOOD + "[[rect]]\ncorners = [[1, 2, 3], [4, 5, 6]]\ncolour = '#000000'\n")
-    assert complaint(path) == (
-        "rect[1].corners: must have the same x, y or z in both corners, the rectangle's plane, "
-        "not [[1, 2, 3], [4, 5, 6]]"
-    )
-
-
-def test_long_values_are_not_shown(tmp_path):
-    path = write(tmp_path, changed('"#c8c8b4"', f'"{"x" * 100}"'))
-    assert complaint(path) == 'rect[0] ("floor") colour: must be a colour such as "#c8c8b4"'
-
-
 def test_too_many_rectangles(tmp_path):
     path = write(tmp_path, GOOD + RECT * 2)
     assert len(load_scene(path, rectangles=3).rect) == 3
     assert complaint(path, rectangles=2) == (
         "rect: 3 rectangles, but the hardware holds 2; remove some or build it with RECTANGLES=3"
     )
-
-
-def test_more_rectangles_than_any_hardware_holds(tmp_path):
-    path = write(tmp_path, GOOD + RECT * 40)
-    assert complaint(path, rectangles=12) == "rect: 41 rectangles, but no hardware holds more than 32; remove some"
-
-
-@pytest.mark.timeout(10)
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("a." * 50_000 + "a = 1\n", "has too many dots in a line; a key of a scene has one part"),
-        ("#" * 1_000_000, "is larger than 1,000,000 bytes, the limit for scene files; remove some of it"),
-    ],
-    ids=["dots", "bytes"],
-)
-def test_slow_files_are_refused_at_once(tmp_path, text, expected):
-    assert complaint(write(tmp_path, text + GOOD)) == expected
 
 
 def test_a_device_is_no_scene():
@@ -310,19 +298,8 @@ def test_monstrous_toml_is_refused_too(tmp_path, text):
     assert complaint(write(tmp_path, text)).startswith("is not TOML: ")
 
 
-def test_long_numbers_are_refused_too(tmp_path):
-    """Python reads hexadecimal numbers of any length, but prints none of more than a few thousand decimal digits."""
-    path = write(tmp_path, changed("rows = 240", "rows = 0x" + "f" * 4000))
-    assert complaint(path) == "rows: must be 240, 200 or 180"
-
-
 def test_a_byte_order_mark_is_no_part_of_the_scene(tmp_path):
     assert load_scene(write(tmp_path, "\ufeff" + GOOD)) == load_scene(write(tmp_path, GOOD))
-
-
-def test_deep_values_are_refused_too(tmp_path):
-    path = write(tmp_path, GOOD.replace("rows = 240", "rows" + ".a" * 2000 + " = 1"))
-    assert complaint(path) == "rows: must be 240, 200 or 180"
 
 
 @pytest.mark.parametrize("path", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)

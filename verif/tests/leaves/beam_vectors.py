@@ -5,28 +5,23 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from math import gcd
+from typing import Any
 
 import numpy as np
-import pytest
 from hard_scenes import sharpened, verdict
-from vectors import AXES, LAST, any_place, config_id, ports
+from vectors import AXES, LAST, any_place, by_axis, check, colour_word, designs, leaf_of, named
 
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
 from raycaster.engines.beam import TESTER_LATENCY, fold_lead, is_staged, slope_at
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.random_world import random_basis, random_camera, random_rectangles
+from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import bit, unsigned
-from raycaster.rtl.common.interfaces import Direction, Slope
-from raycaster.rtl.common.records import Signs, candidate_of, facet_of, stride_of, walk_of
+from raycaster.rtl.beam.fold_tester import fold_tester
+from raycaster.rtl.common.records import candidate_of, facet_of, stride_of, walk_of
 from raycaster.rtl.common.widths import (
-    DISTANCE_BITS,
-    exact_slope_bits,
-    fold_bits,
     index_bits,
     steepest_slope,
-    turn_bits,
     walk_bits,
 )
 
@@ -43,53 +38,30 @@ def beam_config(*, reflections: int = 1, **options) -> Configuration:
     return replace(configure(engine="beam", reflections=0, **options), reflections=reflections)
 
 
-def word(value: int, bits: int) -> int:
-    """Encode a number for a port of this width."""
-    return int(value) % (1 << bits)
-
-
-def number(value: int, bits: int) -> int:
-    """Decode a port's two's complement value."""
-    return value - (1 << bits) if value >> (bits - 1) else value
-
-
-by_screen = pytest.mark.parametrize(
-    "config",
-    [
-        beam_config(reflections=0, rows=200, scale=1),
-        beam_config(reflections=1, rows=180),
-        beam_config(reflections=2, rows=240),
-        beam_config(reflections=2, screen="tiny"),
-        beam_config(reflections=1, rows=180, turn=True),
-        beam_config(reflections=2, rows=240, turn=True, materials=True, patterns=True),
-        beam_config(reflections=2, screen="tiny", turn=True),
-        beam_config(reflections=1, rows=180, scale=6, pixels=2),
-        beam_config(reflections=1, rows=180, scale=6, pixels=2, turn=True),
-        beam_config(reflections=1, screen="tiny", pixels=2, turn=True),
-    ],
-    ids=config_id,
+BY_SCREEN = (
+    beam_config(reflections=0, rows=200, scale=1),
+    beam_config(reflections=1, rows=180),
+    beam_config(reflections=2, rows=240),
+    beam_config(reflections=2, screen="tiny"),
+    beam_config(reflections=1, rows=180, turn=True),
+    beam_config(reflections=2, rows=240, turn=True, materials=True, patterns=True),
+    beam_config(reflections=2, screen="tiny", turn=True),
+    beam_config(reflections=1, rows=180, scale=6, pixels=2),
+    beam_config(reflections=1, rows=180, scale=6, pixels=2, turn=True),
+    beam_config(reflections=1, screen="tiny", pixels=2, turn=True),
 )
+"""Designs of each screen, with and without each feature."""
+
+by_screen = designs(*BY_SCREEN)
 
 
-def direction_ports(name: str, config: Configuration, slope) -> dict[str, int]:
-    width = exact_slope_bits(config) + 1
-    return {f"{name}_{axis}": word(value, width) for axis, value in zip(AXES, slope, strict=True)}
-
-
-def pixels_of(config: Configuration, channels: list[int]) -> list[int]:
-    """Return the pixels of one clock, left one first, as words made of the red, green and blue ports."""
-    bits = config.colour_bits
-    lanes = [[channel >> bits * lane & (1 << bits) - 1 for channel in channels] for lane in range(config.pixels)]
-    return [(red << bits | green) << bits | blue for red, green, blue in lanes]
-
-
-def products(table: Rectangles, index: int, camera, slope) -> dict[str, int]:
-    """Compute the products that cross-multiplication compares, the distance and way_q."""
+def products(table: Rectangles, index: int, camera, slope, names=()) -> dict[str, int]:
+    """Compute the products that cross-multiplication compares, the distance and way_q; or those of these names."""
     axis = int(table.axes[index])
     low, high = (bound[index].astype(object) - camera for bound in (table.low, table.high))
     n, e = int(low[axis]), int(slope[axis])
     p, q = P[axis], Q[axis]
-    return {
+    found = {
         "distance": n,
         "way_p": n * int(slope[p]),
         "way_q": n * int(slope[q]),
@@ -98,6 +70,7 @@ def products(table: Rectangles, index: int, camera, slope) -> dict[str, int]:
         "low_q": int(low[q]) * e,
         "high_q": int(high[q]) * e,
     }
+    return {name: found[name] for name in names or found}
 
 
 def flat_tables(random: np.random.Generator, count: int) -> Rectangles:
@@ -203,100 +176,82 @@ def met_last(camera, slope, mirrors) -> list[int]:
     return [axis for t, (axis, _) in zip(times, mirrors, strict=True) if t == times[-1]]
 
 
-def image_of(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
+def image_of(camera, slope, mirrors) -> dict[str, int]:
     """Return the room's image by its definition: x - E = +-(X - E) + T, with x on the ray from the mirrored camera."""
     eye, _ = seen_from(camera, slope, mirrors)
     met = met_last(camera, slope, mirrors)
-    fields = {f"met_{name}": int(axis in met) for axis, name in enumerate(AXES)}
-    fields |= {f"back_{name}": sum(axis == mirror for mirror, _ in mirrors) % 2 for axis, name in enumerate(AXES)}
-    moved = zip(AXES, eye, camera, strict=True)
-    return fields | {f"turn_{name}": word(int(there) - int(here), turn_bits(config)) for name, there, here in moved}
+    fields = by_axis("met_", (int(axis in met) for axis in range(3)))
+    fields |= by_axis("back_", (sum(axis == mirror for mirror, _ in mirrors) % 2 for axis in range(3)))
+    return fields | by_axis("turn_", (int(there) - int(here) for there, here in zip(eye, camera, strict=True)))
 
 
-def folded(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
+def folded(camera, slope, mirrors) -> dict[str, int]:
     """Return the fold of a ray in the image of the room."""
     eye, turned = seen_from(camera, slope, mirrors)
     turn = [int(value) for value in eye - camera]
-    fields = image_of(config, camera, slope, mirrors)
+    fields = image_of(camera, slope, mirrors)
     back = [fields[f"back_{name}"] for name in AXES]
     for letter, others in (("p", P), ("q", Q)):
         for axis, other in enumerate(others):
             flip = back[axis] != back[other]
             sign = -1 if flip else 1
-            added = turn[other] * int(slope[axis]) - sign * turn[axis] * int(slope[other]) + flip
-            fields[f"{letter}_{AXES[axis]}"] = word(added, fold_bits(config))
+            fields[f"{letter}_{AXES[axis]}"] = (
+                turn[other] * int(slope[axis]) - sign * turn[axis] * int(slope[other]) + flip
+            )
     axis, plane = mirrors[-1] if mirrors else (0, int(camera[0]))
     distance = plane - int(camera[axis])
-    fields |= {f"border_{name}": word(distance * int(slope[c]), walk_bits(config)) for c, name in enumerate(AXES)}
-    fields["mirror_back"] = int(turned[axis] < 0)
-    return fields | {"axis": axis, "distance": word(distance, DISTANCE_BITS)}
+    fields |= by_axis("border_", (distance * int(component) for component in slope))
+    return fields | {"mirror_back": int(turned[axis] < 0), "axis": axis, "distance": distance}
 
 
-def check_tester(block, fields, config: Configuration, tmp_path, random: np.random.Generator) -> None:
+def check_tester(block, config: Configuration, tmp_path, random: np.random.Generator) -> None:
     """Test mirrored rays if the block has a port for their fold, otherwise rays from the camera."""
-    slope_bits, lead = exact_slope_bits(config), fold_lead(config) if fields else 0
+    folds = block is fold_tester
+    lead = fold_lead(config) if folds else 0
     strobes = ("step_way", "step_bounds", "step_slope")
-    leaf = Leaf(block, lambda: ports(
-        "clk", **{strobe: bit() for strobe in strobes}, facet=facet_of(config), walk=walk_of(config), signs=Signs(),
-        slope=Slope(slope_bits), **{name: port.twin() for name, port in fields.items()},
-        index=unsigned(index_bits(config)), hit=candidate_of(config), staged=is_staged(config)
-    ), tmp_path)  # fmt: skip
+    hits = {"index": index_bits(config), "hit": lambda: candidate_of(config), "staged": is_staged(config)}
+    leaf = leaf_of(block, tmp_path, config, **hits)
     stimulus, expected, seen = [], {}, set()
     # The more mirrors, the fewer of them meet in one point.
-    count, most = (3600 * max(1, config.reflections - 1), None) if fields else (1500, 0)
+    count, most = (3600 * max(1, config.reflections - 1), None) if folds else (1500, 0)
     for table, chosen, camera, slope, mirrors in beam_rays(random, config, count, most):
-        if bool(mirrors) != bool(fields):
+        if bool(mirrors) != folds:
             continue
-        fold = {f"fold_{name}": value for name, value in folded(config, camera, slope, mirrors).items()}
+        fold = named("fold", folded(camera, slope, mirrors)) if folds else {}
         eye, turned = seen_from(camera, slope, mirrors)
+        met = met_last(camera, slope, mirrors)
         for index in chosen:
             now = products(table, index, camera, slope)
-            bounds = {f"walk_{name}": word(now[name], walk_bits(config)) for name in WALK if name != "way_p"}
-            way_q = {"walk_way_q" if config.turn else "facet_way_q": word(now["way_q"], walk_bits(config))}
-            facet = {
-                "facet_usable": int(random.random() < 0.9),
-                "facet_axis": int(table.axes[index]),
-                "facet_distance": word(now["distance"], DISTANCE_BITS),
-            }
-            if config.patterns:
-                facet["facet_cell"] = int(random.integers(8))
-            ways = {"walk_way_p": word(now["way_p"], walk_bits(config)), **way_q}
+            usable, cell = int(random.random() < 0.9), int(random.integers(8)) if config.patterns else 0
+            facet = {"facet_usable": usable, "facet_axis": table.axes[index], "facet_distance": now["distance"]}
+            way_q = {"walk_way_q" if config.turn else "facet_way_q": now["way_q"]}
+            bounds = {f"walk_{name}": now[name] for name in WALK if name != "way_p"}
             # Between its strobes a stage keeps its values.
-            case_stimulus: list[dict[str, int]] = [dict.fromkeys(strobes, 0) for _ in range(lead + 3)]
-            case_stimulus[0] |= facet | (fold if fields else {})
-            case_stimulus[lead] |= {f"signs_d{axis}": int(part < 0) for axis, part in zip(AXES, slope, strict=True)}
-            case_stimulus[lead if fields else 1] |= ways
-            case_stimulus[lead + 1] |= bounds
-            case_stimulus[lead + slope_at(config)] |= {f"slope_d{AXES[c]}": abs(int(slope[c])) for c in range(3)}
+            cycles: list[dict[str, Any]] = [dict.fromkeys(strobes, 0) for _ in range(lead + 3)]
+            cycles[0] |= facet | ({"facet_cell": cell} if config.patterns else {}) | fold
+            cycles[lead] |= by_axis("signs_d", (int(part < 0) for part in slope))
+            cycles[lead if folds else 1] |= {"walk_way_p": now["way_p"], **way_q}
+            cycles[lead + 1] |= bounds
+            cycles[lead + slope_at(config)] |= by_axis("slope_d", map(abs, slope))
             # Any index in the design; the table has fewer rectangles.
             number = int(random.integers(config.rectangles))
-            case_stimulus[lead + 2] |= {"index": number}
+            cycles[lead + 2] |= {"index": number}
             # Inputs without their strobe belong to another ray.
-            case_stimulus[lead + 1] |= {f"signs_d{axis}": int(random.integers(2)) for axis in AXES}
-            case_stimulus[lead + 2] |= {name: int(random.integers(1 << walk_bits(config))) for name in bounds}
+            cycles[lead + 1] |= by_axis("signs_d", [int(random.integers(2)) for _ in AXES])
+            cycles[lead + 2] |= {name: int(random.integers(1 << walk_bits(config))) for name in bounds}
             for cycle, strobe in enumerate(strobes, lead):
-                case_stimulus[cycle] |= {strobe: 1}
-            start = len(stimulus) + lead
-            stimulus += case_stimulus
-            mirror, met = mirrors[-1] if mirrors else None, met_last(camera, slope, mirrors)
-            hit, n, e = verdict(table, index, eye, turned, mirror, met)
-            at_mirror = hit and not verdict(table, index, eye, turned, mirror)[0]
+                cycles[cycle] |= {strobe: 1}
+            hit, n, e, at_mirror = verdict(table, index, eye, turned, mirrors[-1] if mirrors else None, met)
             seen.add((len(met), hit, at_mirror))
-            case = table.corners[index].tolist(), camera, slope, mirrors
-            expected[start + TESTER_LATENCY] = facet, hit and bool(facet["facet_usable"]), at_mirror, n, e, number, case
-    outputs = leaf.run_both([*stimulus, dict.fromkeys(strobes, 0)], settled=lead + TESTER_LATENCY)
+            wanted = {"valid": hit and usable, "index": number}
+            wanted |= {"axis": table.axes[index], "cell": cell} if config.patterns else {}
+            wanted |= {"at_mirror": at_mirror, "numerator": n, "denominator": e} if hit else {}
+            expected[len(stimulus) + lead + TESTER_LATENCY] = named("hit", wanted)
+            stimulus += cycles
     # No mirror: miss or hit. One, or two in one point: also a hit in that point. Three in one point hide the rest.
-    assert len([case for case in seen if case[0] < 3]) == (3 * min(config.reflections, 2) if fields else 2)
-    assert ((3, False, False) in seen) == (config.reflections > 2 and bool(fields))
-    for cycle, (facet, hit, at_mirror, n, e, number, case) in expected.items():
-        output = outputs[cycle]
-        assert output["hit_valid"] == hit, case
-        assert output["hit_index"] == number, case
-        if config.patterns:
-            assert (output["hit_axis"], output["hit_cell"]) == (facet["facet_axis"], facet["facet_cell"]), case
-        if hit:
-            found = [output[f"hit_{name}"] for name in ("at_mirror", "numerator", "denominator")]
-            assert found == [at_mirror, n, e], case
+    assert len([case for case in seen if case[0] < 3]) == (3 * min(config.reflections, 2) if folds else 2)
+    assert ((3, False, False) in seen) == (config.reflections > 2 and folds)
+    check(leaf, [*stimulus, dict.fromkeys(strobes, 0)], expected, settled=lead + TESTER_LATENCY)
 
 
 @cache
@@ -337,15 +292,20 @@ def close_candidates(random: np.random.Generator, config: Configuration) -> tupl
 
 
 def candidate_ports(config: Configuration, name: str, candidate) -> dict[str, int]:
+    """Return a candidate as the fields of a port."""
     fields = dict(zip(CANDIDATE, candidate, strict=True))
-    if config.patterns:
-        fields |= {"axis": fields["index"] % 3, "cell": fields["index"] % 8}
-    return {f"{name}_{field}": value for field, value in fields.items()}
+    return named(name, fields | ({"axis": fields["index"] % 3, "cell": fields["index"] % 8} if config.patterns else {}))
 
 
 def fraction_of(candidate) -> Fraction:
     _, _, numerator, denominator, _ = candidate
     return Fraction(numerator, denominator)
+
+
+def first_of(config: Configuration, candidates) -> dict[str, int]:
+    """Return the ports of the nearest candidate, of equal ones the first."""
+    valid = [candidate for candidate in candidates if candidate[0]]
+    return candidate_ports(config, "nearest", min(valid, key=fraction_of)) if valid else {"nearest_valid": 0}
 
 
 def any_facets(random: np.random.Generator, config: Configuration) -> tuple[list[dict[str, int]], int]:
@@ -368,6 +328,15 @@ def opened(random: np.random.Generator, corners: np.ndarray, axis: int, plane: i
         side = LAST if edge < point or (edge == point and random.random() < 0.5) else 0
         corners[:, u] = random.permutation([edge, side if random.random() < 0.7 else (any_place(random) + side) // 2])
     return t
+
+
+def last_hits(table: Rectangles, camera, slope, mirrors: int) -> int:
+    """Count the rectangles in a ray's way after its last mirror; faster than a whole trace."""
+    eye, way = (np.array(one, dtype=np.int64)[:, None] for one in (camera, slope))
+    for number, (winner, *_, bounce) in enumerate(ExactModel().meetings(table, eye, way, keep=True)):
+        if number == mirrors or winner[0] < 0:
+            return int(bounce.hits.sum()) if number == mirrors else 0
+    raise AssertionError("a ray ends")
 
 
 def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np.ndarray, Rectangles, int]:
@@ -409,22 +378,9 @@ def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np
             plane = coordinate(eye, turned, times[-2 if by_mirror else -1], axis) + int(random.integers(-1, 2))
             opened(random, corners[order[ends + 1]], axis, min(max(plane, 0), LAST), eye, turned)
         table = Rectangles(corners, table.colours, np.ones(count, dtype=bool))
-        traced = ExactModel().trace(table, camera, (0, 0, 0), slopes[column : column + 1], ends, keep=True)
-        if traced.bounces[-1].hits.sum() >= min(1 if by_mirror else 2, count):
+        if last_hits(table, camera, slopes[column], ends) >= min(1 if by_mirror else 2, count):
             return camera, table, column
     raise AssertionError(f"no ray meets two rectangles, or one next to a mirror, after {ends} reflections")
-
-
-def row_signals(config: Configuration) -> dict[str, object]:
-    """Return the signals that carry a row's set-up to a lane and to each of its passes."""
-    return {
-        "start_line": bit(),
-        "load": unsigned(config.rectangles),
-        "start": walk_of(config),
-        "aim": Direction(exact_slope_bits(config) + 1),
-        "facets": unsigned(config.rectangles * len(facet_of(config).word)),
-        "growths": unsigned(config.rectangles * len(stride_of(config).word)),
-    }
 
 
 def row_ports(config: Configuration, table: Rectangles, camera, slopes) -> tuple[dict[str, int], list[dict[str, int]]]:
@@ -438,10 +394,26 @@ def row_ports(config: Configuration, table: Rectangles, camera, slopes) -> tuple
     for index in range(config.rectangles):
         now, then = (products(table, index, camera, slope) for slope in slopes)
         seen = {"usable": 1, "axis": table.axes[index], "distance": now["distance"], "way_q": now["way_q"]}
-        seen["colour"] = int.from_bytes(bytes(table.colours[index]))
+        seen["colour"] = colour_word(table.colours[index])
         more = {name: config.pixels * (then[name] - now[name]) for name in WALK}
         facets |= facet.pack(seen) << index * len(facet.word)
         growths |= growth.pack(more) << index * len(growth.word)
-        begin.append({f"start_{name}": word(now[name], walk_bits(config)) for name in WALK} | {"load": 1 << index})
-    held = direction_ports("aim", config, slopes[0])
-    return held | {"facets": facets, "growths": growths, "start_line": 0, "load": 0}, begin
+        begin.append({f"start_{name}": now[name] for name in WALK} | {"load": 1 << index})
+    return by_axis("aim_", slopes[0]) | {"facets": facets, "growths": growths, "start_line": 0, "load": 0}, begin
+
+
+def any_view(random: np.random.Generator, config: Configuration) -> np.ndarray:
+    """Return a row's slopes as on another screen, so that every bit of the slopes matters."""
+    slopes, steepest = primary_slopes(config.screen_geometry), steepest_slope(config)
+    spare = steepest - int(abs(slopes[..., 1]).max())
+    view = slopes[int(random.integers(len(slopes)))].copy()
+    view[:, 0] = random.integers(1, steepest + 1)
+    view[:, 1] += random.integers(-spare, spare + 1)
+    view[:, 2] = random.integers(-steepest, steepest + 1)
+    return view
+
+
+def row_ports_of(config: Configuration) -> dict[str, Any]:
+    """Return the signals that carry a row's set-up to a lane and to each of its passes, as for `leaf_of`."""
+    growths = config.rectangles * len(stride_of(config).word)
+    return {"load": config.rectangles, "start": lambda: walk_of(config), "growths": growths}

@@ -7,11 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from vectors import any_word
+from vectors import any_word, leaf_of
 
 from raycaster.buses import BUSES
 from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import bit, reset_signal
 from raycaster.rtl.bus.buses import BRIDGES
 from raycaster.rtl.common.interfaces import AvalonPort
 from raycaster.rtl.common.widths import LANES
@@ -56,21 +55,7 @@ def any_byte_address(random: np.random.Generator) -> int:
 
 
 def bridge_leaf(name: str, directory: Path) -> Leaf:
+    """Make a leaf of a bus's bridge."""
     bridge = BRIDGES[name]
-    return Leaf(
-        bridge.block,
-        lambda: {
-            "clk": bit(),
-            "reset": reset_signal(),
-            BUSES[name].port: bridge.interface(ADDRESS_BITS),
-            "avm_m0": AvalonPort(ADDRESS_BITS),
-        },
-        directory,
-    )
-
-
-def check(leaf: Leaf, stimulus: list[dict[str, int]], expected: list[dict[str, int]]) -> None:
-    """Compare the outputs with those of a model; after the reset, no output is unknown."""
-    for cycle, (output, wanted) in enumerate(zip(leaf.run_both(stimulus, settled=1), expected, strict=True)):
-        for name, value in wanted.items():
-            assert output[name] == value, f"{name} is {output[name]}, expected {value}, cycle {cycle}"
+    manager = {BUSES[name].port: lambda: bridge.interface(ADDRESS_BITS)}
+    return leaf_of(bridge.block, directory, **manager, avm_m0=lambda: AvalonPort(ADDRESS_BITS))

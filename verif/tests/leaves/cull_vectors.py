@@ -4,10 +4,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-import pytest
-from vectors import AXES, any_place, config_id
+from vectors import AXES, any_config, any_place, designs
 
-from raycaster.configuration import WORLD_SIZE, Configuration, configure
+from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.engines import model_of
 from raycaster.golden.random_world import random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
@@ -15,7 +14,8 @@ from raycaster.golden.world import OTHER_AXES, Rectangles
 
 
 def culling_config(**options) -> Configuration:
-    return configure(**{"culling": True, "allow_underrun": True} | options)
+    """Make a design that culls."""
+    return any_config(culling=True, **options)
 
 
 def hit_mask(config: Configuration, table: Rectangles, camera, row: int, offset: int) -> int:
@@ -61,17 +61,13 @@ def with_edges_on_rays(
     return Rectangles(corners, table.colours, table.enabled)
 
 
-designs = pytest.mark.parametrize(
-    "config",
-    [
-        culling_config(),
-        culling_config(units=20, rectangles=4, fraction_bits=4, rounding="nearest", rows=200),
-        culling_config(units=1, rectangles=3),
-        culling_config(units=320, rectangles=2),
-        culling_config(screen="tiny", units=16, rectangles=32, divider_bits=3),
-        culling_config(engine="exact"),
-        culling_config(engine="exact", units=64, rectangles=1),
-        culling_config(engine="exact", screen="tiny", units=2, rectangles=9),
-    ],
-    ids=config_id,
+culling_designs = designs(
+    culling_config(),
+    culling_config(units=20, rectangles=4, fraction_bits=4, rounding="nearest", rows=200),
+    culling_config(units=1, rectangles=3),
+    culling_config(units=320, rectangles=2),
+    culling_config(screen="tiny", units=16, rectangles=32, divider_bits=3),
+    culling_config(engine="exact"),
+    culling_config(engine="exact", units=64, rectangles=1),
+    culling_config(engine="exact", screen="tiny", units=2, rectangles=9),
 )

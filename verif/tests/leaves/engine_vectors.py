@@ -7,17 +7,15 @@ from typing import Any
 from unittest import mock
 
 import numpy as np
-from hard_scenes import edged, pixel_of, pixel_word, rectangles_in_view, traced_scene, tracer
-from vectors import AXES, ports
+from hard_scenes import edged, pixel_ports, pixel_word, rectangles_in_view, traced_scene, tracer
+from vectors import AXES, by_axis, check, colour_word, leaf_of
 
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
-from raycaster.rtl.common.interfaces import Picture, Place, RayFate, Steps
-from raycaster.rtl.common.records import Pixel, Point, rect_of
-from raycaster.rtl.common.widths import unit_bits
+from raycaster.rtl.common.interfaces import RayFate
+from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.seed.ray_unit import ray_unit
 from raycaster.screens import BEAM_SCREENS, SCREENS, Screen, Span
 from raycaster.verif.expected import sorted_rect, trace_cycles
@@ -45,20 +43,26 @@ def small_config(screen: Screen = SMALL_SCREEN, **options) -> Configuration:
     return config
 
 
-def any_config(**options) -> Configuration:
-    return configure(**{"allow_underrun": True} | options)
-
-
-def visible_indices(table: Rectangles) -> list[int]:
+def usable_of(table: Rectangles) -> list[int]:
+    """Return the indices of the rectangles that are enabled and have a plane."""
     return [int(index) for index in np.flatnonzero(table.visible)]
 
 
 def usable_mask(table: Rectangles) -> int:
-    return sum(1 << index for index in visible_indices(table))
+    """Return the same as a mask."""
+    return sum(1 << index for index in usable_of(table))
 
 
-def colour_word(colour) -> int:
-    return int.from_bytes(bytes(np.asarray(colour, dtype=np.uint8)))
+def place_of(config: Configuration, row: int, column: int) -> dict[str, int]:
+    """Return the place of a pixel as a unit's inputs."""
+    offset, base = divmod(column, config.units)
+    return {"place_row": row, "place_column_offset": offset, "column_base": base}
+
+
+def scene_inputs(camera, table: Rectangles, background, reflections: int) -> dict[str, int]:
+    """Return a scene without its rectangles, as the inputs of a renderer or of its caster."""
+    picture = {"picture_background": colour_word(background), "picture_reflections": reflections}
+    return picture | {"rects_usable": usable_mask(table)} | by_axis("camera_", camera)
 
 
 def fate_of(config: Configuration, golden, table: Rectangles) -> dict[str, Any]:
@@ -97,53 +101,39 @@ def unrelated_inputs(random: np.random.Generator, config: Configuration) -> dict
 
 
 def ray_unit_leaf(config: Configuration, directory) -> Leaf:
-    return Leaf(ray_unit, lambda: ports(
-        "clk", steps=Steps(), place=Place(config), column_base=unsigned(unit_bits(config)), camera=Point(),
-        rect=rect_of(config), offered=rect_of(config), picture=Picture(), pixel=Pixel(config.colour_bits),
-        fate=RayFate(), config=config
-    ), directory)  # fmt: skip
+    """Make a leaf of the seed engine's unit."""
+    return leaf_of(ray_unit, directory, config, offered=lambda: rect_of(config), fate=RayFate)
 
 
 def check_ray_unit(leaf: Leaf, config: Configuration, random: np.random.Generator, rays: int = 24) -> None:
     """Step rays through a unit as its control does; compare MyHDL and Verilog with the golden model."""
     slopes = primary_slopes(config.screen_geometry)
     rows, columns, _ = slopes.shape
-    stimulus, results, reported = [], [], []
+    stimulus, expected, pixels = [], {}, []
     # Numbers of surfaces that a ray hits; each must occur, from none to the most.
     fates, every_fate = set(), set(range(config.reflections + 2))
-    while len(results) < rays or fates != every_fate:
+    while len(pixels) < rays or fates != every_fate:
         row = int(random.choice([0, 1, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
         column = int(random.choice([0, 1, columns // 2, columns - 1, random.integers(columns)]))
         camera, table, background, reflections, golden = traced_scene(random, config, slopes[row, column][None])
         fate = sum(int(winner[0]) >= 0 for winner in golden.winners)
-        if len(results) >= rays and fate in fates:
+        if len(pixels) >= rays and fate in fates:
             continue
         fates.add(fate)
-        held = {
-            "place_row": row,
-            "place_column_offset": column // config.units,
-            "column_base": column % config.units,
-            "picture_background": colour_word(background),
-            **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
-        }
-        fated = fate_of(config, golden, table)
-        for cycle in trace_cycles(config, visible_indices(table), reflections, **fated):
+        held = place_of(config, row, column) | by_axis("camera_", camera)
+        held["picture_background"] = colour_word(background)
+        for cycle in trace_cycles(config, usable_of(table), reflections, **fate_of(config, golden, table)):
             inputs = {**held, **cycle.steps, **rects_shown(config, cycle, table)}
-            if config.culling or config.materials:
-                reported.append((len(stimulus), cycle.towards, cycle.alive))
+            fated = {"fate_towards": cycle.towards, "fate_alive": cycle.alive}
+            expected[len(stimulus)] = {name: value for name, value in fated.items() if name in leaf.seen}
             if not cycle.steps["steps_screen_to_ray"] and not cycle.steps["steps_find_intersection"]:
                 inputs |= unrelated_inputs(random, config)
             stimulus.append(inputs)
-        case = f"row {row}, column {column}, camera {camera}, corners {table.corners.tolist()}"
-        results.append((len(stimulus), pixel_word(config, golden.colours[0]), case))
+        pixels.append(len(stimulus))
+        expected[len(stimulus)] = pixel_ports(config, golden.colours[0])
         # After done, the pixel stays valid whatever the inputs.
         stimulus.append({**dict.fromkeys(stimulus[-1], 0), "picture_background": held["picture_background"]})
-    outputs = leaf.run_both(stimulus, settled=results[0][0])
-    for cycle, pixel, case in results:
-        assert pixel_of(config, outputs[cycle]) == pixel, case
-    for cycle, towards, alive in reported:
-        assert towards is None or outputs[cycle].get("fate_towards", towards) == towards, cycle
-        assert alive is None or outputs[cycle]["fate_alive"] == alive, cycle
+    check(leaf, stimulus, expected, settled=pixels[0])
 
 
 def monitored(outputs: list[dict[str, int]], config: Configuration) -> list[np.ndarray]:
@@ -167,14 +157,20 @@ def monitored(outputs: list[dict[str, int]], config: Configuration) -> list[np.n
     ]
 
 
+def check_frames(outputs: list[dict[str, int]], config: Configuration, pictures: list[np.ndarray]) -> None:
+    """Check that the monitor sees these pictures, rows of pixel words of the engine, one after the other."""
+    frames = monitored(outputs, config)
+    assert len(frames) == len(pictures)
+    doubling = config.screen_geometry.doubling
+    for number, (frame, words) in enumerate(zip(frames, pictures, strict=True)):
+        assert np.array_equal(frame, words.repeat(doubling, axis=0).repeat(doubling, axis=1)), f"frame {number}"
+
+
 def golden_words(config: Configuration, colours: np.ndarray) -> np.ndarray:
+    """Return a picture of the golden model as rows of pixel words."""
     screen = config.screen_geometry
     words = [pixel_word(config, colour) for colour in colours.reshape(-1, 3)]
     return np.array(words).reshape(screen.rows, screen.columns)
-
-
-def doubled(config: Configuration, words: np.ndarray) -> np.ndarray:
-    return words.repeat(config.screen_geometry.doubling, axis=0).repeat(config.screen_geometry.doubling, axis=1)
 
 
 def start_screen_cycle(screen: Screen) -> int:

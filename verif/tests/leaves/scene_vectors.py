@@ -6,6 +6,7 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
+from vectors import any_config
 
 from raycaster.configuration import Configuration, configure
 from raycaster.fixed import FixedRectangle, FixedScene
@@ -30,7 +31,8 @@ MASKS = (0, 0xFF, 0xFF00, 0xFF0000, 0xFF000000, 0xFFFF, EVERY_BIT, EVERY_BIT, EV
 
 
 def sized(rectangles: int, **options) -> Configuration:
-    return configure(rectangles=rectangles, allow_underrun=True, **options)
+    """Make a design with room for this many rectangles."""
+    return any_config(rectangles=rectangles, **options)
 
 
 def random_bus(random: np.random.Generator, addresses: list[int], data: int | None = None) -> dict[str, int]:

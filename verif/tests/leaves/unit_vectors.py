@@ -5,12 +5,14 @@ from fractions import Fraction
 from itertools import product
 
 import numpy as np
+from vectors import any_config
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 
 
-def any_config(**options) -> Configuration:
-    return configure(**{"rectangles": 4, "allow_underrun": True} | options)
+def unit_config(**options) -> Configuration:
+    """Make a design with few rectangles."""
+    return any_config(**{"rectangles": 4} | options)
 
 
 def plain_shares(hits: list[tuple[bool, int]]) -> list[Fraction]:

@@ -3,22 +3,23 @@
 
 import numpy as np
 import pytest
-from beam_vectors import beam_config, pixels_of, race, word
-from hard_scenes import pixel_word, traced_scene
-from vectors import config_id, ports
+from beam_vectors import beam_config, race
+from hard_scenes import pixel_ports, traced_scene
+from vectors import basis_inputs, by_axis, check, colour_word, config_id, leaf_of
 
 from raycaster.engines.beam import AIM_LATENCY, SETUP_LATENCY, beam_latency, start_cycles
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.random_world import random_basis, random_looks
 from raycaster.golden.rays import primary_slopes
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import signed
+from raycaster.hdl.signals import Signed
 from raycaster.rtl.beam.beam_caster import beam_caster
-from raycaster.rtl.common.interfaces import Picture, Rects
-from raycaster.rtl.common.records import camera_of, shown_of
+from raycaster.rtl.common.records import shown_of
 from raycaster.rtl.common.widths import factor_bits
 from raycaster.scene import UNTURNED
 from raycaster.verif.expected import sorted_rect
+
+ALL = {"turn": True, "materials": True, "patterns": True}
+"""Every feature of the engine."""
 
 
 @pytest.mark.slow_sets(
@@ -41,15 +42,12 @@ from raycaster.verif.expected import sorted_rect
         (beam_config(screen="tiny", rectangles=3, reflections=2, scale=1), 400),
         (beam_config(screen="tiny", rectangles=8, reflections=2), 12),
         (beam_config(screen="tiny", rectangles=5, reflections=3, scale=1), 60),
-        (
-            beam_config(screen="tiny", rectangles=5, reflections=4, scale=1, turn=True, materials=True, patterns=True),
-            24,
-        ),
+        (beam_config(screen="tiny", rectangles=5, reflections=4, scale=1, **ALL), 24),
         (beam_config(screen="tiny", rectangles=5, reflections=4, pixels=2), 24),
         (beam_config(rows=180, rectangles=5, reflections=1), 4),
         (beam_config(screen="tiny", rectangles=3, reflections=2, scale=1, turn=True), 200),
         (beam_config(screen="tiny", rectangles=3, reflections=1, scale=1, materials=True, patterns=True), 24),
-        (beam_config(screen="tiny", rectangles=8, reflections=2, turn=True, materials=True, patterns=True), 12),
+        (beam_config(screen="tiny", rectangles=8, reflections=2, **ALL), 12),
         (beam_config(screen="tiny", rectangles=2, reflections=0, scale=1, materials=True, patterns=True), 24),
         (beam_config(screen="tiny", rectangles=1, reflections=0, colour_bits=4, pixels=2), 12),
         (beam_config(screen="tiny", rectangles=3, reflections=2, pixels=2), 40),
@@ -60,18 +58,14 @@ from raycaster.verif.expected import sorted_rect
 )
 def test_beam_caster(config, lines, tmp_path, random):
     """Whole rows of scenes in which a ray of the row meets mirrors and edges."""
-    leaf = Leaf(beam_caster, lambda: ports(
-        "clk reset start_line next_column", row_slope=signed(factor_bits(config)), camera=camera_of(config),
-        picture=Picture(), rects=Rects(config), pixel=shown_of(config), config=config
-    ), tmp_path)  # fmt: skip
+    leaf = leaf_of(beam_caster, tmp_path, config, row_slope=Signed(factor_bits(config)), pixel=lambda: shown_of(config))
     slopes, basis, horizon_row = primary_slopes(config.screen_geometry), UNTURNED, config.screen_geometry.horizon_row
     # If the camera can turn, the rectangles are set up once per lane, and once more.
-    turns = range(config.pixels + 1)
-    sweeps = (
-        [AIM_LATENCY - 3 + (SETUP_LATENCY + config.rectangles - 1) * turn for turn in turns] if config.turn else [0]
-    )
+    sweep = SETUP_LATENCY + config.rectangles - 1
+    sweeps = [AIM_LATENCY - 3 + sweep * turn for turn in range(config.pixels + 1)] if config.turn else [0]
     # Run until no column is in flight, whatever the registers started with.
-    stimulus, expected, fates = [{"reset": 1}] * beam_latency(config), {}, set()
+    latency = beam_latency(config)
+    stimulus, expected, fates = [{"reset": 1}] * latency, {}, set()
     flat = [horizon_row + slope for slope in (-3, -1, 1, 3)]
     for number in range(lines):
         if config.turn:
@@ -90,33 +84,25 @@ def test_beam_caster(config, lines, tmp_path, random):
             table = random_looks(random, table)
         traced = ExactModel().trace(table, camera, background, line, reflections)
         fates |= {tuple(int(winner[column] >= 0) for winner in traced.winners) for column in range(len(line))}
-        vectors = np.concatenate([camera, *(basis if config.turn else ())]).tolist()
-        held = {f"camera_{name}": value for name, value in zip(camera_of(config).layout, vectors, strict=True)}
-        held |= {"reset": 0, "start_line": 0, "next_column": 0}
+        held = by_axis("camera_", camera) | (basis_inputs(basis) if config.turn else {})
+        held |= {"reset": 0, "start_line": 0, "next_column": 0, "picture_background": colour_word(background)}
         held |= {"picture_reflections": reflections} if config.reflections else {}
-        held["picture_background"] = int.from_bytes(bytes(background.astype(np.uint8)))
-        held["rects_usable"] = sum(1 << int(index) for index in np.flatnonzero(table.visible))
+        usable = np.flatnonzero(table.visible)
+        held["rects_usable"] = sum(1 << int(index) for index in usable)
         if number % 16 == 4:
             # Reset ends a line that has begun.
             begun = int(random.integers(config.rectangles + 2))
-            stimulus += [{**held, "start_line": 1}, *[held] * begun, {**held, "reset": 1}]
-            stimulus += [held] * beam_latency(config)
+            stimulus += [{**held, "start_line": 1}, *[held] * begun, {**held, "reset": 1}, *[held] * latency]
         stimulus += [{**held, "start_line": 1}, held, held]
-        held["row_slope"] = word(horizon_row - row, factor_bits(config))
-        given = {sweep + 3 + index: index for sweep in sweeps for index in np.flatnonzero(table.visible)}
+        held["row_slope"] = horizon_row - row
+        given = {first + 3 + index: index for first in sweeps for index in usable}
         for cycle in range(3, start_cycles(config) + int(random.integers(4))):
             rect = sorted_rect(table, given[cycle], "rects_rect", config) if cycle in given else {}
             stimulus.append({**held, **rect})
         for colours in traced.colours.reshape(-1, config.pixels, 3):
             stimulus += [held] * int(random.random() < 0.5 * (config.scale == 1 and number % 8 == 0))
-            expected[len(stimulus) + beam_latency(config)] = (
-                [pixel_word(config, colour) for colour in colours],
-                (camera, table.corners),
-            )
+            expected[len(stimulus) + latency] = pixel_ports(config, *colours)
             stimulus.append({**held, "next_column": 1})
-        stimulus += [held] * beam_latency(config)
-    outputs = leaf.run_both([*stimulus, {}], settled=min(expected))
+        stimulus += [held] * latency
     assert len(fates) >= config.reflections + 2
-    for cycle, (pixels, case) in expected.items():
-        channels = [outputs[cycle][f"pixel_{name}"] for name in ("red", "green", "blue")]
-        assert pixels_of(config, channels) == pixels, (cycle, case)
+    check(leaf, [*stimulus, {}], expected, settled=min(expected))

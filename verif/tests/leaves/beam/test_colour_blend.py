@@ -3,41 +3,30 @@
 
 from fractions import Fraction
 
-import pytest
 from beam_vectors import beam_config
-from vectors import config_id, ports
+from hard_scenes import pixel_ports
+from vectors import check, designs, driven, leaf_of
 
-from raycaster.configuration import CHANNEL_BITS
 from raycaster.engines.beam import blend_latency, mixes
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
 from raycaster.rtl.beam.colour_blend import colour_blend
-from raycaster.rtl.common.interfaces import Picture
-from raycaster.rtl.common.records import Pixel, seen_of
+from raycaster.rtl.common.records import seen_of
 from raycaster.rtl.common.widths import RGB_BITS
 
 
-@pytest.mark.parametrize(
-    "config",
-    [
-        beam_config(colour_bits=6),
-        beam_config(reflections=0),
-        beam_config(reflections=2),
-        beam_config(reflections=4, colour_bits=6),
-        beam_config(reflections=1, materials=True),
-        beam_config(reflections=2, materials=True, colour_bits=6),
-        beam_config(reflections=4, materials=True),
-        beam_config(reflections=0, materials=True),
-    ],
-    ids=config_id,
+@designs(
+    beam_config(colour_bits=6),
+    beam_config(reflections=0),
+    beam_config(reflections=2),
+    beam_config(reflections=4, colour_bits=6),
+    beam_config(reflections=1, materials=True),
+    beam_config(reflections=2, materials=True, colour_bits=6),
+    beam_config(reflections=4, materials=True),
+    beam_config(reflections=0, materials=True),
 )
 def test_colour_blend(config, tmp_path, random):
     """From a miss on, every ray shows the background; the mirrors before a ray set its weight."""
     rays, record = config.reflections + 1, seen_of(config)
-    leaf = Leaf(colour_blend, lambda: ports(
-        "clk", seen=unsigned(rays * len(record.word)), picture=Picture(), pixel=Pixel(config.colour_bits),
-        config=config
-    ), tmp_path)  # fmt: skip
+    leaf = leaf_of(colour_blend, tmp_path, config, seen=rays * len(record.word))
     stimulus, expected = [], []
     latency, background, reflections = blend_latency(config), 0x123456, 0
     for number in range(3000):
@@ -49,7 +38,7 @@ def test_colour_blend(config, tmp_path, random):
         rows = zip(found, mirrors, colours, strict=True)
         fields = [dict(zip(("found", "mirror", "colour"), one, strict=True)) for one in rows]
         stimulus.append({
-            "picture_background": background, **({"picture_reflections": reflections} if rays > 1 else {}),
+            "picture_background": background, "picture_reflections": reflections,
             "seen": sum(record.pack(one) << i * len(record.word) for i, one in enumerate(fields)),
         })  # fmt: skip
         seen = [colour if all(found[: i + 1]) else background for i, colour in enumerate(colours)]
@@ -59,9 +48,7 @@ def test_colour_blend(config, tmp_path, random):
             value = channels.pop()
             for own, quarters in reversed(list(zip(channels, mirrors, strict=False))):
                 value = ((4 - quarters) * own + quarters * value) / 4
-            pixel.append(int(value) >> CHANNEL_BITS - config.colour_bits)
-        expected.append(pixel)
-    outputs = leaf.run_both([*stimulus, *[{}] * latency], settled=latency)
-    for number, (colour, output) in enumerate(zip(expected, outputs[latency:], strict=True)):
-        if number % 100 < 100 - latency:  # for the others, the background has changed on the way
-            assert [output[f"pixel_{channel}"] for channel in ("red", "green", "blue")] == colour, number
+            pixel.append(value)
+        # For the last cases of a background, it has changed on the way.
+        expected.append(pixel_ports(config, pixel) if number % 100 < 100 - latency else None)
+    check(leaf, driven(leaf, stimulus), expected, latency)

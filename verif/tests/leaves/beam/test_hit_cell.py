@@ -4,25 +4,21 @@
 from fractions import Fraction
 
 import numpy as np
-import pytest
 from beam_vectors import beam_config
-from vectors import LAST, any_place, config_id, ports
+from vectors import LAST, any_place, check, designs, leaf_of
 
 from raycaster.engines.beam import CELL_LATENCY
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import signed, unsigned
+from raycaster.hdl.signals import Signed
 from raycaster.rtl.beam.hit_cell import hit_cell
 from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, steepest_slope, turn_bits
 
 
-@pytest.mark.parametrize("config", [beam_config(screen="tiny", patterns=True, turn=True, reflections=2)], ids=config_id)
+@designs(beam_config(screen="tiny", patterns=True, turn=True, reflections=2))
 def test_hit_cell(config, tmp_path, random):
     """Cells of coordinates (E + T) +- D n / e within the world, many of them at a cell's edge."""
     slope_bits, numerator_bits, turn_width = exact_slope_bits(config), eye_bits(config) - 1, turn_bits(config)
-    leaf = Leaf(hit_cell, lambda: ports(
-        "clk back odd", turn=signed(turn_width), eye=unsigned(9), slope=signed(slope_bits + 1),
-        numerator=unsigned(numerator_bits), denominator=unsigned(slope_bits), cell_size=unsigned(3)
-    ), tmp_path)  # fmt: skip
+    widths = {"turn": Signed(turn_width), "eye": 9, "slope": Signed(slope_bits + 1), "cell_size": 3}
+    leaf = leaf_of(hit_cell, tmp_path, **widths, numerator=numerator_bits, denominator=slope_bits)
     far, steepest = (1 << turn_width - 1) - 1, steepest_slope(config)
     stimulus, expected = [{}], {}
     while len(stimulus) < 8000:
@@ -37,10 +33,7 @@ def test_hit_cell(config, tmp_path, random):
         if not 0 <= place <= LAST or not n:
             continue
         cell = int(random.integers(8))
-        stimulus[-1] |= {"turn": turn % (1 << turn_width), "eye": eye, "back": back, "numerator": n, "denominator": e,
-                         "cell_size": cell}  # fmt: skip
-        expected[len(stimulus) - 1 + CELL_LATENCY - 1] = int(place // (8 << cell)) % 2
-        stimulus.append({"slope": slope % (1 << slope_bits + 1)})
-    outputs = leaf.run_both([*stimulus, *[{}] * CELL_LATENCY], settled=min(expected))
-    for cycle, odd in expected.items():
-        assert outputs[cycle]["odd"] == odd, stimulus[cycle - CELL_LATENCY + 1 :][:2]
+        stimulus[-1] |= {"turn": turn, "eye": eye, "back": back, "numerator": n, "denominator": e, "cell_size": cell}
+        expected[len(stimulus) - 1 + CELL_LATENCY - 1] = {"odd": int(place // (8 << cell)) % 2}
+        stimulus.append({"slope": slope})
+    check(leaf, [*stimulus, *[{}] * CELL_LATENCY], expected, settled=min(expected))

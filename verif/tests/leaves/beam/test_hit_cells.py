@@ -6,16 +6,15 @@ from math import gcd
 
 import numpy as np
 import pytest
-from beam_vectors import beam_config, beam_rays, direction_ports, image_of, seen_from
-from vectors import AXES, LAST, any_place, config_id, ports
+from beam_vectors import beam_config, beam_rays, image_of, seen_from
+from vectors import LAST, any_place, by_axis, check, designs, leaf_of, named
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.engines.beam import CELL_LATENCY, CELL_SLOPE_AT
 from raycaster.golden.world import OTHER_AXES
-from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.beam.hit_cells import hit_cells
 from raycaster.rtl.common.interfaces import Direction
-from raycaster.rtl.common.records import Point, Sight, candidate_of, turn_of, winner_of
+from raycaster.rtl.common.records import Point, Sight
 from raycaster.rtl.common.widths import exact_slope_bits, index_bits, steepest_slope
 
 
@@ -44,23 +43,17 @@ def to_edge(random: np.random.Generator, config: Configuration, axis: int, plane
 
 
 @pytest.mark.slow_sets("beam-tiny48-s2-u1-r12-m0", "beam-vga180")
-@pytest.mark.parametrize(
-    "config",
-    [
-        beam_config(screen="tiny", patterns=True, reflections=0),
-        beam_config(patterns=True, rows=180),
-        beam_config(screen="tiny", patterns=True, turn=True, reflections=2),
-        beam_config(screen="tiny", patterns=True, reflections=4),
-    ],
-    ids=config_id,
+@designs(
+    beam_config(screen="tiny", patterns=True, reflections=0),
+    beam_config(patterns=True, rows=180),
+    beam_config(screen="tiny", patterns=True, turn=True, reflections=2),
+    beam_config(screen="tiny", patterns=True, reflections=4),
 )
 def test_hit_cells(config, tmp_path, random):
     """Points on planes of all axes, many exactly at a cell's edge; without a hit the outputs are don't care."""
-    slope_bits, latency = exact_slope_bits(config), CELL_LATENCY
-    leaf = Leaf(hit_cells, lambda: ports(
-        "clk", turn=turn_of(config), nearest=candidate_of(config), winner=winner_of(config),
-        slope=Direction(slope_bits + 1), camera=Point(), sight=Sight(index_bits(config)), config=config
-    ), tmp_path)  # fmt: skip
+    latency, slope_bits = CELL_LATENCY, exact_slope_bits(config)
+    ports = {"camera": Point, "slope": lambda: Direction(slope_bits + 1), "sight": lambda: Sight(index_bits(config))}
+    leaf = leaf_of(hit_cells, tmp_path, config, **ports)
     stimulus, expected = [{} for _ in range(4000)], {}
     cycle = 0
     for table, chosen, camera, ray, mirrors in beam_rays(random, config, 1200):
@@ -81,19 +74,13 @@ def test_hit_cells(config, tmp_path, random):
             if not all(0 <= coordinate <= LAST for coordinate in point) or cycle + latency >= len(stimulus):
                 continue
             cell, number = int(random.integers(6)), int(random.integers(config.rectangles))
-            parities = [int(coordinate // (8 << cell)) % 2 for coordinate in point]
             fields = {"valid": 1, "numerator": n, "denominator": e, "axis": axis, "cell": cell}
-            stimulus[cycle] |= {f"nearest_{name}": value for name, value in fields.items()}
-            stimulus[cycle] |= {"winner_valid": 1, "winner_index": number}
-            image = image_of(config, camera, slope, mirrors)
-            stimulus[cycle + 1] |= {f"turn_{name}": value for name, value in image.items()}
-            stimulus[cycle + 1] |= {f"camera_{name}": int(value) for name, value in zip(AXES, camera, strict=True)}
-            stimulus[cycle + CELL_SLOPE_AT] |= direction_ports("slope", config, slope)
-            expected[cycle + latency] = *parities, number
+            stimulus[cycle] |= named("nearest", fields) | {"winner_valid": 1, "winner_index": number}
+            stimulus[cycle + 1] |= named("turn", image_of(camera, slope, mirrors)) | by_axis("camera_", camera)
+            stimulus[cycle + CELL_SLOPE_AT] |= by_axis("slope_", slope)
+            odd_u, odd_v = (int(coordinate // (8 << cell)) % 2 for coordinate in point)
+            expected[cycle + latency] = {"sight_valid": 1, "sight_odd_u": odd_u, "sight_odd_v": odd_v,
+                                         "sight_index": number}  # fmt: skip
             cycle += 1
     assert len(expected) > 400
-    outputs = leaf.run_both(stimulus, settled=1 + latency)
-    for cycle, values in expected.items():
-        output = outputs[cycle]
-        assert output["sight_valid"]
-        assert tuple(output[f"sight_{name}"] for name in ("odd_u", "odd_v", "index")) == values, cycle
+    check(leaf, stimulus, expected, settled=1 + latency)

@@ -3,12 +3,10 @@
 
 import pytest
 from beam_vectors import any_facets, beam_config
-from vectors import ports
+from vectors import check, leaf_of, named
 
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
 from raycaster.rtl.beam.look_up import look_up
-from raycaster.rtl.common.records import Sight, facet_of, seen_of, winner_of
+from raycaster.rtl.common.records import Sight, winner_of
 from raycaster.rtl.common.widths import index_bits
 
 
@@ -16,17 +14,15 @@ from raycaster.rtl.common.widths import index_bits
 def test_look_up(looks, tmp_path, random):
     """Each rectangle's look, with the cell's colour if it has a pattern; kept between steps."""
     config = beam_config(screen="tiny", rectangles=5, **looks)
-    leaf = Leaf(look_up, lambda: ports(
-        "clk step", facets=unsigned(config.rectangles * len(facet_of(config).word)),
-        sight=Sight(index_bits(config)) if config.patterns else winner_of(config), seen=seen_of(config), config=config
-    ), tmp_path)  # fmt: skip
+    sights = {"sight": lambda: Sight(index_bits(config)) if config.patterns else winner_of(config)}
+    leaf = leaf_of(look_up, tmp_path, config, **sights)
     stimulus, expected, kept = [], [], None
     for _ in range(400):
         facets, side_by_side = any_facets(random, config)
         sight = {"valid": int(random.integers(2)), "index": int(random.integers(config.rectangles))}
         sight |= {name: int(random.integers(2)) for name in ("odd_u", "odd_v") if config.patterns}
         step = int(random.random() < 0.8) if kept else 1
-        stimulus.append({"step": step, "facets": side_by_side} | {f"sight_{name}": v for name, v in sight.items()})
+        stimulus.append({"step": step, "facets": side_by_side} | named("sight", sight))
         if step:
             facet = facets[sight["index"]]
             kept = {"seen_found": sight["valid"], "seen_colour": facet["colour"]}
@@ -37,6 +33,4 @@ def test_look_up(looks, tmp_path, random):
             if config.materials:
                 kept["seen_mirror"] = facet["mirror"]
         expected.append(kept)
-    outputs = leaf.run_both([*stimulus, {"step": 0}], settled=1)
-    for output, wanted in zip(outputs[1:], expected, strict=True):
-        assert {name: output[name] for name in wanted} == wanted
+    check(leaf, stimulus, expected, latency=1)

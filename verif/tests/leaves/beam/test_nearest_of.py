@@ -2,11 +2,9 @@
 """Leaf tests of `nearest_of`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
-from beam_vectors import CANDIDATE, any_candidate, beam_config, candidate_ports, close_candidates, fraction_of
-from vectors import ports
+from beam_vectors import CANDIDATE, any_candidate, beam_config, close_candidates, first_of
+from vectors import check, leaf_of
 
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
 from raycaster.rtl.beam.nearest_of import nearest_of
 from raycaster.rtl.common.records import candidate_of
 
@@ -17,13 +15,11 @@ def test_nearest_of(count, contest, tmp_path, random):
     config = beam_config(rectangles=count)
     rounds = max(1, (count - 1).bit_length())
     record = candidate_of(config)
-    leaf = Leaf(nearest_of, lambda: ports(
-        "clk", candidates=unsigned(count * len(record.word)), nearest=candidate_of(config), rounds=rounds,
-        latency=contest
-    ), tmp_path)  # fmt: skip
-    # Often only a few are valid, so that each is the nearest often enough.
-    fields = []
+    bits = len(record.word)
+    leaf = leaf_of(nearest_of, tmp_path, config, candidates=count * bits, rounds=rounds, latency=contest)
+    stimulus, expected = [], []
     for _ in range(1200):
+        # Often only a few are valid, so that each is the nearest often enough.
         share = random.choice([0.2, 0.5, 1])
         field = [any_candidate(random, config) for _ in range(count)]
         field = [(int(valid and random.random() < share), *others) for valid, *others in field]
@@ -33,16 +29,7 @@ def test_nearest_of(count, contest, tmp_path, random):
             places = [first, first + 1] if random.random() < 0.5 else random.choice(count, 2, replace=False).tolist()
             for place, one in zip(places, close_candidates(random, config), strict=True):
                 field[place] = one
-        fields.append(field)
-    stimulus = [
-        {"candidates": sum(record.pack(dict(zip(CANDIDATE, one, strict=True))) << i * len(record.word)
-                           for i, one in enumerate(field))}
-        for field in fields
-    ]  # fmt: skip
-    latency = rounds * contest
-    outputs = leaf.run_both([*stimulus, *[{}] * latency], settled=latency)
-    for field, output in zip(fields, outputs[latency:], strict=True):
-        valid = [one for one in field if one[0]]
-        assert output["nearest_valid"] == bool(valid)
-        if valid:
-            assert output == candidate_ports(config, "nearest", min(valid, key=fraction_of))
+        words = [record.pack(dict(zip(CANDIDATE, one, strict=True))) for one in field]
+        stimulus.append({"candidates": sum(word << place * bits for place, word in enumerate(words))})
+        expected.append(first_of(config, field))
+    check(leaf, stimulus, expected, rounds * contest)

@@ -17,4 +17,4 @@ from raycaster.rtl.beam.ray_tester import ray_tester
 @by_screen
 def test_ray_tester(config, tmp_path, random):
     """A ray every few cycles; its walk comes a cycle later, its slope's magnitudes one or two cycles later."""
-    check_tester(ray_tester, {}, config, tmp_path, random)
+    check_tester(ray_tester, config, tmp_path, random)

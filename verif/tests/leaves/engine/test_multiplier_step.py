@@ -3,28 +3,24 @@
 
 import pytest
 from arithmetic_vectors import factors
-from vectors import ports
+from vectors import check, leaf_of
 
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import signed, unsigned
+from raycaster.hdl.signals import Signed
 from raycaster.rtl.engine.multiplier_step import multiplier_step
 
 
 @pytest.mark.parametrize("subtract", [False, True])
 @pytest.mark.parametrize(("width", "count"), [(3, 3), (4, 2), (11, 9)])
 def test_multiplier_step(width, count, subtract, tmp_path, random):
-    leaf = Leaf(multiplier_step, lambda: ports(
-        "", multiplicand=signed(width), total=signed(width), digits=unsigned(count), next_total=signed(width),
-        next_digits=unsigned(count), subtract=subtract
-    ), tmp_path)  # fmt: skip
-    stimulus = [
-        {"multiplicand": multiplicand, "total": total, "digits": digits}
-        for multiplicand in factors(random, width)
-        for total in factors(random, width)
-        for digits in {0, (1 << count) - 1, 1, int(random.integers(1 << count))}
-    ]
-    for inputs, outputs in zip(stimulus, leaf.run_both(stimulus), strict=True):
-        others, digit = divmod(inputs["digits"], 2)
-        added = inputs["total"] + (-digit if subtract else digit) * inputs["multiplicand"]
-        total, digits = added >> 1, (added & 1) << count - 1 | others
-        assert outputs == {"next_total": total % (1 << width), "next_digits": digits}, inputs
+    """One bit of the multiplier; the lowest bit of the sum becomes the highest digit."""
+    widths = dict.fromkeys(("multiplicand", "total", "next_total"), Signed(width))
+    leaf = leaf_of(multiplier_step, tmp_path, **widths, digits=count, next_digits=count, subtract=subtract)
+    stimulus, expected = [], []
+    for multiplicand in factors(random, width):
+        for total in factors(random, width):
+            for digits in {0, (1 << count) - 1, 1, int(random.integers(1 << count))}:
+                stimulus.append({"multiplicand": multiplicand, "total": total, "digits": digits})
+                others, digit = divmod(digits, 2)
+                added = total + (-digit if subtract else digit) * multiplicand
+                expected.append({"next_total": added >> 1, "next_digits": (added & 1) << count - 1 | others})
+    check(leaf, stimulus, expected)

@@ -1,22 +1,16 @@
 # SPDX-License-Identifier: MIT
 """Leaf tests of `ray_sequencer`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
-from itertools import pairwise
-
 import pytest
 from exact_vectors import exact_config
-from fates import control_leaf, flat_rectangles, group_fate_in, mask_of, random_fate, usable_masks
+from fates import check_control, control_leaf, mask_of
+from vectors import any_config, check, driven
 
-from raycaster.configuration import Configuration, configure
-from raycaster.golden.random_world import random_looks
+from raycaster.configuration import Configuration
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 from raycaster.rtl.exact.exact_control import exact_control
 from raycaster.rtl.seed.ray_control import ray_control
-from raycaster.verif.expected import EARLY_OUT_AT, TraceCycle, ends_early, slot_length, sorted_rect, trace_cycles
-
-
-def seed_config(**options) -> Configuration:
-    return configure(allow_underrun=True, **options)
+from raycaster.verif.expected import trace_cycles
 
 
 @pytest.mark.parametrize(
@@ -30,92 +24,21 @@ def seed_config(**options) -> Configuration:
         (exact_control, exact_config(rectangles=2, reflections=2, materials=True)),
         *((ray_sequencer, exact_config(rectangles=n, reflections=r)) for n, r in ((2, 1), (12, 2))),
         *(
-            (ray_sequencer, seed_config(rectangles=n, reflections=2, divider_bits=b))
+            (ray_sequencer, any_config(rectangles=n, reflections=2, divider_bits=b))
             for n, b in ((3, 3), (12, 3), (5, 1))
         ),
     ],
     ids=lambda value: value.name if isinstance(value, Configuration) else value.__name__,
 )
 def test_controls(function, config, tmp_path, random):
-    write_at = 2 if config.engine == "exact" else slot_length(config) + 3
-    leaf = control_leaf(function, config, tmp_path)
-    count = config.rectangles
-    masks, table = usable_masks(random, count, 24), flat_rectangles(random, count)
-    table = random_looks(random, table)
-    quiet = {name: 0 for name in leaf.outputs if name.startswith("steps_") and name != "steps_initial_ray"}
-    quiet["done"] = 0
-    quiet_cycle = TraceCycle({}, 0)
-    stimulus, expected = [], []
-
-    def drive(inputs, wanted=None, current=None, offered=None):
-        rect = sorted_rect(table, int(random.integers(count)) if current is None else current, "rects_rect", config)
-        stimulus.append({**inputs, **{name: value for name, value in rect.items() if name in leaf.given}})
-        expected.append((wanted, current, offered))
-
-    for number, mask in enumerate(masks):
-        usable = [index for index in range(count) if mask >> index & 1]
-        reflections = config.reflections if number < 2 else int(random.integers(config.reflections + 1))
-        held = {"rects_usable": mask, "picture_reflections": reflections}
-        fate = random_fate(random, usable, reflections, number)
-        # Unusable rectangles are not visited, whatever the mask says.
-        held["fate_may_hit"] = mask_of(fate["may_hit"]) | int(random.integers(1 << count)) & ~mask
-        for _ in range(2):
-            drive({**held, "reset_ray_caster": 1, "enable": int(random.integers(2))})
-        for _ in range(int(random.integers(3))):
-            drive({**held, "reset_ray_caster": 0, "enable": 0}, quiet)
-        drive({**held, "reset_ray_caster": 0, "enable": 1}, quiet)
-        trace = trace_cycles(config, usable, reflections, **fate)
-        if number == 0:
-            assert len(trace) + 3 == config.group_cycles, "including done and the two cycles of reset"
-        # A row may be abandoned at any moment; results in flight must not appear later.
-        abandoned = number > 4 and number % 2
-        for before, cycle in pairwise([quiet_cycle, *trace][: int(random.integers(len(trace))) if abandoned else None]):
-            wanted = {name: value for name, value in cycle.steps.items() if name in leaf.outputs} | {"done": 0}
-            if cycle.steps["steps_screen_to_ray"]:
-                del wanted["steps_initial_ray"]
-            inputs = {**held, "reset_ray_caster": 0, "enable": int(random.integers(2))}
-            inputs |= (
-                {"early_out": int(ends_early(config) and before.towards == 0)} if function is ray_sequencer else {}
-            )
-            drive(inputs | group_fate_in(random, cycle, leaf), wanted, cycle.current, cycle.offered)
-        if not abandoned:
-            for _ in range(int(random.integers(1, 4))):
-                # Rendering is over, so reflections may change.
-                after = {"picture_reflections": int(random.integers(config.reflections + 1))}
-                after |= {"reset_ray_caster": 0, "enable": int(random.integers(2))}
-                drive({**held, **after}, {**quiet, "done": 1})
-
-    settled = next(cycle for cycle, (_, _, offered) in enumerate(expected) if offered is not None)
-    outputs = leaf.run_both(stimulus, settled=settled)
-    held_by_memory = None
-    for cycle, (output, (wanted, current, offered)) in enumerate(zip(outputs, expected, strict=True)):
-        if wanted is not None:
-            assert {name: output[name] for name in wanted} == wanted, cycle
-        if current is not None:
-            assert held_by_memory == current, f"cycle {cycle}: fetched another rectangle"
-        if function is ray_sequencer and wanted is not None:
-            # Bit i follows find_intersection by i + 1 cycles, unless a reset came between.
-            started = [
-                outputs[before]["steps_find_intersection"] for before in range(cycle - 1, cycle - write_at - 2, -1)
-            ]
-            resets = [stimulus[before]["reset_ray_caster"] for before in range(cycle - 1, cycle - write_at - 2, -1)]
-            alive = started[: resets.index(1)] if 1 in resets else started
-            # A test that ended early is not in flight from the next cycle on.
-            for place in range(EARLY_OUT_AT, len(alive)):
-                alive[place] &= not stimulus[cycle - 1 - place + EARLY_OUT_AT].get("early_out", 0)
-            assert output["in_flight"] == sum(bit << place for place, bit in enumerate(alive)), cycle
-        elif offered is not None:
-            rect = sorted_rect(table, offered, "offered", config)
-            surface = {name: value for name, value in rect.items() if name in output}
-            assert {name: output[name] for name in surface} == surface, cycle
-        if output["rects_fetch"]:
-            held_by_memory = output["rects_index"]
+    """The exact engine's control, and the sequencer of either engine."""
+    check_control(function, config, tmp_path, random)
 
 
 @pytest.mark.parametrize(
     ("function", "config"),
     [
-        (ray_control, seed_config(rectangles=5, reflections=2, divider_bits=1)),
+        (ray_control, any_config(rectangles=5, reflections=2, divider_bits=1)),
         (exact_control, exact_config(rectangles=5, reflections=2, culling=True)),
     ],
     ids=lambda value: value.name if isinstance(value, Configuration) else value.__name__,
@@ -140,11 +63,8 @@ def test_fate_is_read_in_one_cycle(function, config, tmp_path, random):
             "fate_any_alive": opposite_beside([cycle.alive for cycle in trace]),
         }
         cycles = [dict(zip(said, values, strict=True)) for values in zip(*said.values(), strict=True)]
-        stimulus += [{name: value for name, value in cycle.items() if name in leaf.inputs} for cycle in [*cycles, {}]]
-    outputs = leaf.run_both(stimulus, settled=len(trace))
-    for cycle, wanted in enumerate(expected):
-        if wanted is not None:
-            assert {name: outputs[cycle][name] for name in wanted} == wanted, cycle
+        stimulus += driven(leaf, [*cycles, {}])
+    check(leaf, stimulus, expected, settled=len(trace))
 
 
 def opposite_beside(values: list[int | None]) -> list[int]:

@@ -3,10 +3,8 @@
 
 import pytest
 from exact_vectors import exact_config
-from vectors import ports
+from vectors import check, check_fetches, leaf_of
 
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.widths import index_bits
 from raycaster.rtl.engine.rect_sequencer import rect_sequencer
 
@@ -14,17 +12,18 @@ from raycaster.rtl.engine.rect_sequencer import rect_sequencer
 @pytest.mark.parametrize("slot_cycles", [1, 3, 9])
 @pytest.mark.parametrize("count", [1, 5, 12])
 def test_rect_sequencer(count, slot_cycles, tmp_path, random):
+    """All, some or single rectangles; some slots end early, and some sequences with a reset."""
     config = exact_config(rectangles=count)
-    leaf = Leaf(rect_sequencer, lambda: ports(
-        "clk reset_ray_caster start_ray early_out fetch fetched starting", wanted=unsigned(count),
-        index=unsigned(index_bits(config)), slot_cycles=slot_cycles, config=config
-    ), tmp_path)  # fmt: skip
-    stimulus, expected = [], []
+    ports = {"wanted": count, "index": index_bits(config), "slot_cycles": lambda: slot_cycles}
+    leaf = leaf_of(rect_sequencer, tmp_path, config, **ports)
+    stimulus, expected, on_port = [], [], {}
 
     def drive(reset, start, mask, current=None, first=False, early_out=0):
         """Add a cycle in which `current` is on the memory's port."""
+        if current is not None:
+            on_port[len(stimulus)] = current
         stimulus.append({"reset_ray_caster": reset, "start_ray": start, "wanted": mask, "early_out": early_out})
-        expected.append((current, first))
+        expected.append(None if reset else {"fetched": current is not None, "starting": first})
 
     every = (1 << count) - 1
     for number in range(60):
@@ -48,11 +47,5 @@ def test_rect_sequencer(count, slot_cycles, tmp_path, random):
             drive(0, 0, mask, current, first, early_out)
         if number % 5 != 4:
             drive(0, 0, mask)
-    outputs = leaf.run_both(stimulus, settled=4)
-    held_by_memory = None
-    for cycle, (output, (current, first)) in enumerate(zip(outputs, expected, strict=True)):
-        if cycle >= 4 and not stimulus[cycle]["reset_ray_caster"]:
-            assert (bool(output["fetched"]), bool(output["starting"])) == (current is not None, first), (cycle,)
-            assert current is None or held_by_memory == current, cycle
-        if output["fetch"]:
-            held_by_memory = output["index"]
+    outputs = check(leaf, stimulus, expected, settled=4)
+    check_fetches(outputs, on_port, "", settled=4)

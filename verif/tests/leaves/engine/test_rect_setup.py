@@ -3,18 +3,16 @@
 
 import numpy as np
 import pytest
-from beam_vectors import WALK, beam_config, by_screen, direction_ports, flat_tables, number, products
-from vectors import AXES, any_place, ports
+from beam_vectors import WALK, beam_config, by_screen, flat_tables, products
+from vectors import any_place, by_axis, check, leaf_of
 
 from raycaster.configuration import Configuration
 from raycaster.engines.beam import SETUP_LATENCY
 from raycaster.golden.random_world import random_basis, random_looks
 from raycaster.golden.rays import primary_slopes
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
-from raycaster.rtl.common.interfaces import Direction, Rects
-from raycaster.rtl.common.records import Look, Point, facet_of, growth_of, walk_of
-from raycaster.rtl.common.widths import DISTANCE_BITS, exact_slope_bits, walk_bits
+from raycaster.rtl.common.interfaces import Direction
+from raycaster.rtl.common.records import Look, Point, growth_of, walk_of
+from raycaster.rtl.common.widths import exact_slope_bits
 from raycaster.rtl.engine.rect_setup import rect_setup
 from raycaster.verif.expected import sorted_rect
 
@@ -31,56 +29,44 @@ def any_slope(random: np.random.Generator, config: Configuration) -> np.ndarray:
 @by_screen
 def test_rect_setup(config, tmp_path, random, in_adders=False):
     """Random lines; a reset ends the last one."""
-    count = config.rectangles
-    leaf = Leaf(rect_setup, lambda: ports(
-        "clk reset start_line", rects=Rects(config), camera=Point(), slope=Direction(exact_slope_bits(config) + 1),
-        load=unsigned(count), facet=facet_of(config), growth=growth_of(config), start=walk_of(config), config=config,
-        in_adders=in_adders
-    ), tmp_path)  # fmt: skip
-    stimulus = [{"reset": 1}] * 2
-    loads = {}
+    count, ports = config.rectangles, {"start": lambda: walk_of(config), "growth": lambda: growth_of(config)}
+    ports |= {"camera": Point, "slope": lambda: Direction(exact_slope_bits(config) + 1)}
+    leaf = leaf_of(rect_setup, tmp_path, config, **ports, load=count, in_adders=in_adders)
+    stimulus, loads = [{"reset": 1}] * 2, {}
     for _ in range(12):
         table = random_looks(random, flat_tables(random, count))
-        camera = np.array([any_place(random) for _ in AXES])
-        held = {f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)}
-        held |= {"reset": 0, "start_line": 0, "rects_usable": sum(int(one) << i for i, one in enumerate(table.enabled))}
+        camera = [any_place(random) for _ in range(3)]
+        held = by_axis("camera_", camera) | {"reset": 0, "start_line": 0}
+        held["rects_usable"] = sum(int(one) << i for i, one in enumerate(table.enabled))
         start = len(stimulus)
         stimulus += [{**held, "start_line": 1}, held, held]
         slope = any_slope(random, config)
-        held |= direction_ports("slope", config, slope)
+        held |= by_axis("slope_", slope)
         for index in range(count):
             # The rectangle comes two cycles after it was asked for.
             stimulus.append({**held, **sorted_rect(table, index, "rects_rect", config)})
-            loads[start + SETUP_LATENCY + index] = table, index, camera, slope
+            now, then = (products(table, index, camera, column) for column in (slope, slope + [0, 1, 0]))
+            looks = sorted_rect(table, index, "facet", config)
+            wanted = {
+                f"facet_{name}": looks[f"facet_{name}"] for name in Look(config.materials, config.patterns).layout
+            }
+            wanted |= {"facet_usable": table.enabled[index], "facet_axis": table.axes[index]}
+            wanted |= {"start_way_q" if config.turn else "facet_way_q": now["way_q"]}
+            wanted |= {"facet_distance": now["distance"], "load": 1 << index}
+            wanted |= {f"start_{name}": now[name] for name in WALK}
+            wanted |= {} if config.turn else {f"growth_{name}": then[name] - now[name] for name in WALK}
+            loads[start + SETUP_LATENCY + index] = wanted
         stimulus += [held] * (SETUP_LATENCY + int(random.integers(5)))
     # Reset while every stage is busy with the last line.
     end = start + SETUP_LATENCY + min(1, count - 1)
     stimulus[end] = stimulus[end] | {"reset": 1}
     stimulus[end + 1] = stimulus[end + 1] | {"reset": 0}
-    loads = {cycle: load for cycle, load in loads.items() if cycle <= end}
-    outputs = leaf.run_both(stimulus, settled=2 + SETUP_LATENCY)
-    width = walk_bits(config)
-    for cycle, output in enumerate(outputs[2:], 2):
-        assert output["load"] == (1 << loads[cycle][1] if cycle in loads else 0), cycle
-    for cycle, (table, index, camera, slope) in loads.items():
-        output = outputs[cycle]
-        now, then = (products(table, index, camera, column) for column in (slope, slope + np.array([0, 1, 0])))
-        case = cycle, index, camera, table.corners[index].tolist(), slope
-        assert output["facet_usable"] == table.enabled[index], case
-        assert output["facet_axis"] == table.axes[index], case
-        assert number(output["facet_distance"], DISTANCE_BITS) == now["distance"], case
-        looks = sorted_rect(table, index, "facet", config)
-        assert all(
-            output[f"facet_{name}"] == looks[f"facet_{name}"] for name in Look(config.materials, config.patterns).layout
-        )
-        way_q = output["start_way_q" if config.turn else "facet_way_q"]
-        assert number(way_q, width) == now["way_q"], case
-        for name in WALK:
-            assert number(output[f"start_{name}"], width) == now[name], (name, case)
-            if not config.turn:
-                assert number(output[f"growth_{name}"], DISTANCE_BITS) == then[name] - now[name], (name, case)
+    expected = [loads.get(cycle, {"load": 0}) if cycle <= end else {"load": 0} for cycle in range(len(stimulus))]
+    outputs = check(leaf, stimulus, expected, settled=2 + SETUP_LATENCY)
+    assert not any(output["load"] for output in outputs[2 : 2 + SETUP_LATENCY])
 
 
 @pytest.mark.parametrize("turn", [False, True])
 def test_rect_setup_in_adders(turn, tmp_path, random):
+    """Products from adders, as the culler has them."""
     test_rect_setup(beam_config(screen="tiny", turn=turn), tmp_path, random, in_adders=True)

@@ -4,15 +4,12 @@
 from fractions import Fraction
 from math import gcd
 
-from exact_vectors import by_reflections, by_turn, exact_config, slope_inputs, two_complement
-from vectors import LAST, ports
+from exact_vectors import by_reflections, by_turn, exact_config
+from vectors import LAST, by_axis, check, leaf_of, slope_inputs
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.world import OTHER_AXES
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
-from raycaster.rtl.common.interfaces import Eye, Slope, Steps
-from raycaster.rtl.common.records import Signs, surface_of
+from raycaster.rtl.common.records import surface_of
 from raycaster.rtl.common.widths import exact_slope_bits, eye_bits
 from raycaster.rtl.exact.cell_finder import cell_finder
 
@@ -22,12 +19,9 @@ from raycaster.rtl.exact.cell_finder import cell_finder
 def test_cell_finder(reflections, turn, tmp_path, random):
     """Cells of points, computed with fractions: cells of every size, and points on cell borders."""
     config = exact_config(reflections=reflections, turn=turn, patterns=True)
-    leaf = Leaf(cell_finder, lambda: ports(
-        "clk odd_u odd_v", steps=Steps(), eye=Eye(eye_bits(config)), signs=Signs(),
-        slope=Slope(exact_slope_bits(config)), found_surface=surface_of(config),
-        found_distance=unsigned(eye_bits(config) - 1), found_slope=unsigned(exact_slope_bits(config))
-    ), tmp_path)  # fmt: skip
-    stimulus, expected, borders = [], [], 0
+    found = {"found_surface": lambda: surface_of(config), "found_distance": eye_bits(config) - 1}
+    leaf = leaf_of(cell_finder, tmp_path, config, **found, found_slope=exact_slope_bits(config))
+    stimulus, expected, borders = [], {}, 0
     far, steepest = LAST * (reflections + 1), (1 << exact_slope_bits(config)) - 1
     while len(expected) < 300:
         axis, size = int(random.integers(3)), int(random.integers(8))
@@ -48,11 +42,10 @@ def test_cell_finder(reflections, turn, tmp_path, random):
         cells = [place / (8 << size) for place in point]
         borders += any(cell.denominator == 1 for cell in cells)
         held = {"found_surface_axis": axis, "found_surface_cell": size, "found_distance": n, "found_slope": e}
-        held |= {**two_complement(eye, eye_bits(config), "eye"), **slope_inputs(slope)}
+        held |= by_axis("eye_", eye) | slope_inputs(slope)
         for cycle in range(7):
-            stimulus.append({**held, "steps_load_divider": int(cycle == 0), "steps_store_quotient": int(cycle == 3)})
-        expected.append((len(stimulus) - 1, [int(cell) % 2 for cell in cells]))
-    outputs = leaf.run_both(stimulus, settled=6)
-    for cycle, odd in expected:
-        assert [outputs[cycle]["odd_u"], outputs[cycle]["odd_v"]] == odd, stimulus[cycle]
+            stimulus.append({**held, "steps_load_divider": cycle == 0, "steps_store_quotient": cycle == 3})
+        odd_u, odd_v = (int(cell) % 2 for cell in cells)
+        expected[len(stimulus) - 1] = {"odd_u": odd_u, "odd_v": odd_v}
+    check(leaf, stimulus, expected, settled=6)
     assert borders > 30

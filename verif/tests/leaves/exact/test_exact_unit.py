@@ -1,26 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Leaf tests of `exact_unit`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
-import numpy as np
 import pytest
-from exact_vectors import basis_inputs, exact_config, two_complement
-from hard_scenes import cornered, facing, pixel_of, pixel_word, rivalled, traced_scene, tracer
-from vectors import config_id, ports
+from engine_vectors import fate_of, place_of, usable_of
+from exact_vectors import exact_config
+from hard_scenes import cornered, facing, pixel_ports, rivalled, traced_scene, tracer
+from vectors import basis_inputs, by_axis, check, colour_word, config_id, driven, leaf_of
 
 from raycaster.golden.random_world import random_basis
 from raycaster.golden.rays import primary_slopes
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
-from raycaster.rtl.common.interfaces import Picture, Place, RayFate, Steps
-from raycaster.rtl.common.records import Pixel, camera_of, rect_of, surface_of
-from raycaster.rtl.common.widths import unit_bits
+from raycaster.rtl.common.interfaces import RayFate
+from raycaster.rtl.common.records import surface_of
 from raycaster.rtl.exact.exact_unit import exact_unit
 from raycaster.verif.expected import sorted_rect, trace_cycles
-
-
-def held_inputs(camera, background, reflections) -> dict[str, int]:
-    colour = int.from_bytes(bytes(background.astype(np.uint8)))
-    return {**two_complement(camera, 9, "camera"), "picture_background": colour, "picture_reflections": reflections}
 
 
 @pytest.mark.slow_sets("exact-vga240-u1-", "exact-vga240-u5")
@@ -45,14 +37,11 @@ def held_inputs(camera, background, reflections) -> dict[str, int]:
     ids=config_id,
 )  # fmt: skip
 def test_exact_unit(config, tmp_path, random):
-    leaf = Leaf(exact_unit, lambda: ports(
-        "clk", steps=Steps(), place=Place(config), column_base=unsigned(unit_bits(config)), camera=camera_of(config),
-        rect=rect_of(config), offered=surface_of(config), picture=Picture(), pixel=Pixel(config.colour_bits),
-        fate=RayFate(), config=config
-    ), tmp_path)  # fmt: skip
+    """Rays whose last hits are close decisions: at edges, next to rivals, in corners, and at the end of the world."""
+    leaf = leaf_of(exact_unit, tmp_path, config, offered=lambda: surface_of(config), fate=RayFate)
     slopes = primary_slopes(config.screen_geometry)
     rows, columns, _ = slopes.shape
-    stimulus, results, fates, alive = [], [], set(), {}
+    stimulus, expected, fates, alive = [], {}, set(), set()
     ends = config.culling or config.materials
     for _ in range(500 if config == exact_config(units=5, rectangles=8, reflections=2) else 80):
         basis = random_basis(random) if config.turn else None
@@ -79,38 +68,26 @@ def test_exact_unit(config, tmp_path, random):
             given = {"camera": camera, "background": background, "slopes": slope, "reflections": reflections}
             traced = tracer(config, **given)(table)
         fates.add((reflections, sum(int(winner[0]) >= 0 for winner in traced.winners)))
-        place = {"place_row": row, "place_column_offset": column // config.units, "column_base": column % config.units}
-        held = {**held_inputs(camera, background, reflections), **place}
-        if basis is not None:
-            held |= basis_inputs(basis)
-        held = {name: value for name, value in held.items() if name in leaf.given}
-        usable = [int(index) for index in np.flatnonzero(table.visible)]
+        held = by_axis("camera_", camera) | place_of(config, row, column)
+        held |= {"picture_background": colour_word(background), "picture_reflections": reflections}
+        held |= basis_inputs(basis) if basis is not None else {}
+        usable = usable_of(table)
         if not usable:
             continue
-        endings = [
-            bounce
-            for bounce, winner in enumerate(traced.winners)
-            if winner[0] < 0 or (config.materials and table.mirrors[winner[0]] == 0)
-        ]
-        lost = min(endings, default=None) if ends else None
-        cycles = trace_cycles(config, usable, reflections, lost=lost)
+        cycles = trace_cycles(config, usable, reflections, **fate_of(config, traced, table))
         # The place is valid before the ray is loaded.
-        stimulus.append({**held, **{name: 0 for name in cycles[0].steps if name in leaf.given}})
+        stimulus.append({**held, **dict.fromkeys(cycles[0].steps, 0)})
         for cycle in cycles:
             if cycle.alive is not None and ends:
-                alive[len(stimulus)] = cycle.alive
+                alive.add(cycle.alive)
+                expected[len(stimulus)] = {"fate_alive": cycle.alive}
             other = int(random.choice(usable))
-            inputs = {**held, **cycle.steps}
-            inputs |= sorted_rect(table, other if cycle.current is None else cycle.current, "rect", config)
-            inputs |= sorted_rect(table, other if cycle.offered is None else cycle.offered, "offered", config)
-            stimulus.append({name: value for name, value in inputs.items() if name in leaf.given})
-        case = f"row {row}, column {column}, camera {camera}, corners {table.corners.tolist()}"
-        results.append((len(stimulus), pixel_word(config, traced.colours[0]), case))
-        stimulus.append({**held, **{name: 0 for name in cycle.steps if name in leaf.given}})
+            current, offered = (other if one is None else one for one in (cycle.current, cycle.offered))
+            rects = sorted_rect(table, current, "rect", config) | sorted_rect(table, offered, "offered", config)
+            stimulus.append({**held, **cycle.steps, **rects})
+        expected[len(stimulus)] = pixel_ports(config, traced.colours[0])
+        stimulus.append({**held, **dict.fromkeys(cycles[0].steps, 0)})
     assert len(fates) >= 2 + 2 * config.reflections
-    outputs = leaf.run_both(stimulus, settled=results[0][0])
-    for cycle, pixel, case in results:
-        assert pixel_of(config, outputs[cycle]) == pixel, case
-    for cycle, expected in alive.items():
-        assert outputs[cycle]["fate_alive"] == expected, cycle
-    assert not ends or set(alive.values()) == {0, 1}
+    assert not ends or alive == {0, 1}
+    settled = next(cycle for cycle, wanted in expected.items() if "fate_alive" not in wanted)
+    check(leaf, driven(leaf, stimulus), expected, settled=settled)

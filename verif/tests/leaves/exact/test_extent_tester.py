@@ -5,11 +5,10 @@ from fractions import Fraction
 
 import numpy as np
 from exact_vectors import by_reflections, exact_config
-from vectors import LAST, ports
+from vectors import LAST, check, leaf_of
 
 from raycaster.configuration import WORLD_SIZE
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import signed, unsigned
+from raycaster.hdl.signals import Signed
 from raycaster.rtl.common.widths import exact_slope_bits, eye_bits
 from raycaster.rtl.exact.extent_tester import extent_tester
 
@@ -19,13 +18,11 @@ def test_extent_tester(reflections, tmp_path, random):
     """Rays that meet the plane before, at and beyond the bounds and the mirror, computed with fractions."""
     config = exact_config(reflections=reflections)
     eye_width, slope_bits = eye_bits(config), exact_slope_bits(config)
-    leaf = Leaf(extent_tester, lambda: ports(
-        "clk step back on_mirror ahead between in_mirror", low=unsigned(9), high=unsigned(9), eye=signed(eye_width),
-        slope=unsigned(slope_bits), mirror_distance=unsigned(eye_width - 1), n=unsigned(eye_width - 1),
-        e=unsigned(slope_bits)
-    ), tmp_path)  # fmt: skip
+    widths = {"low": 9, "high": 9, "eye": Signed(eye_width), "slope": slope_bits}
+    widths |= {"mirror_distance": eye_width - 1, "n": eye_width - 1, "e": slope_bits}
     far, steepest = LAST * (reflections + 1), (1 << slope_bits) - 1
-    stimulus, aheads, expected, late = [], {}, {}, {}
+    stimulus, late, seen = [], {}, set()
+    expected = [{} for _ in range(6002)]
     for cycle in range(6000):
         low, high = sorted(int(random.choice([0, 1, LAST, random.integers(WORLD_SIZE)])) for _ in range(2))
         eye = int(random.choice([0, LAST, far, far - LAST, LAST - far, random.integers(LAST - far, far + 1)]))
@@ -42,20 +39,16 @@ def test_extent_tester(reflections, tmp_path, random):
         n = int(np.clip(n, 1, (1 << eye_width - 1) - 1))
         step = int(cycle == 0 or random.random() < 0.9)
         stimulus.append(late | {
-            "step": step, "low": low, "high": high, "eye": eye % (1 << eye_width), "back": back, "slope": slope,
-            "on_mirror": on_mirror,
+            "step": step, "low": low, "high": high, "eye": eye, "back": back, "slope": slope, "on_mirror": on_mirror,
         })  # fmt: skip
-        late = {"mirror_distance": min(mirror, (1 << eye_width - 1) - 1), "n": n, "e": e}
-        aheads[cycle] = beyond >= 0
+        mirror = min(mirror, (1 << eye_width - 1) - 1)
+        late = {"mirror_distance": mirror, "n": n, "e": e}
+        expected[cycle]["ahead"] = beyond >= 0
         if step and beyond >= 0:
-            at, mirror = Fraction(slope * n, e), late["mirror_distance"]
+            at = Fraction(slope * n, e)
             behind_mirror = on_mirror and near <= mirror and at < mirror
-            expected[cycle + 2] = near <= at <= beyond and not behind_mirror, bool(on_mirror and near <= mirror == at)
-    outputs = leaf.run_both([*stimulus, late, {}], settled=2)
-    assert {value for pair in expected.values() for value in pair} == {False, True}
-    for cycle, ahead in aheads.items():
-        assert bool(outputs[cycle]["ahead"]) == ahead or cycle < 2, cycle
-    for cycle, wanted in expected.items():
-        assert tuple(bool(outputs[cycle][name]) for name in ("between", "in_mirror")) == wanted, (
-            stimulus[cycle - 2 : cycle]
-        )  # fmt: skip
+            between, in_mirror = near <= at <= beyond and not behind_mirror, on_mirror and near <= mirror == at
+            expected[cycle + 2] |= {"between": between, "in_mirror": in_mirror}
+            seen |= {bool(between), bool(in_mirror)}
+    assert seen == {False, True}
+    check(leaf_of(extent_tester, tmp_path, **widths), [*stimulus, late, {}], expected, settled=2)

@@ -4,10 +4,9 @@
 from itertools import product
 
 import pytest
-from vectors import ports
+from vectors import check, leaf_of
 
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import signed, unsigned
+from raycaster.hdl.signals import Signed
 from raycaster.rtl.exact.hit_component import hit_component
 
 
@@ -16,24 +15,12 @@ from raycaster.rtl.exact.hit_component import hit_component
 )
 def test_hit_component(eye_bits, slope_bits, bits, tmp_path, random):
     """The lowest bits of E e + D n, for all combinations of operands at their limits, and for random ones."""
-    leaf = Leaf(hit_component, lambda: ports(
-        "back", eye=signed(eye_bits), slope=unsigned(slope_bits), distance=unsigned(eye_bits - 1),
-        e=unsigned(slope_bits), component=unsigned(bits)
-    ), tmp_path)  # fmt: skip
+    widths = {"eye": Signed(eye_bits), "slope": slope_bits, "distance": eye_bits - 1, "e": slope_bits}
+    leaf = leaf_of(hit_component, tmp_path, **widths, component=bits)
     most, steepest = (1 << (eye_bits - 1)) - 1, (1 << slope_bits) - 1
     cases = list(product((-most - 1, -1, 0, 1, most), (0, 1), (0, 1, steepest), (0, 1, most), (0, 1, steepest)))
-    cases += [
-        (
-            int(random.integers(-most - 1, most + 1)), int(random.integers(2)), int(random.integers(steepest + 1)),
-            int(random.integers(most + 1)), int(random.integers(steepest + 1)),
-        )
-        for _ in range(300)
-    ]  # fmt: skip
-    names = ("eye", "back", "slope", "distance", "e")
-    stimulus = [
-        dict(zip(names, (eye % (1 << eye_bits), *others), strict=True)) for eye, *others in cases
-    ]  # fmt: skip
-    outputs = leaf.run_both(stimulus)
-    for case, output in zip(cases, outputs, strict=True):
-        eye, back, slope, distance, e = case
-        assert output["component"] == (eye * e + (-slope if back else slope) * distance) % (1 << bits), case
+    limits = ((-most - 1, most), (0, 1), (0, steepest), (0, most), (0, steepest))
+    cases += [tuple(int(random.integers(low, high + 1)) for low, high in limits) for _ in range(300)]
+    stimulus = [dict(zip(("eye", "back", "slope", "distance", "e"), case, strict=True)) for case in cases]
+    results = [eye * e + (-slope if back else slope) * distance for eye, back, slope, distance, e in cases]
+    check(leaf, stimulus, [{"component": result % (1 << bits)} for result in results])

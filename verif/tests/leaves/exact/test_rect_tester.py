@@ -1,39 +1,22 @@
 # SPDX-License-Identifier: MIT
 """Leaf tests of `rect_tester`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
-from fractions import Fraction
+from itertools import chain
 
 import numpy as np
-from exact_vectors import by_reflections, by_turn, exact_config, slope_inputs, two_complement
+from exact_vectors import by_reflections, by_turn, exact_config
 from hard_scenes import sharpened, verdict
-from vectors import AXES, LAST, ports
+from vectors import LAST, by_axis, check, driven, leaf_of, named, slope_inputs
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.world import Rectangles
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
-from raycaster.rtl.common.interfaces import Eye, Slope, Steps
-from raycaster.rtl.common.records import Rect, Signs, mirror_of
+from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import exact_slope_bits, eye_bits
 from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.verif.expected import sorted_rect
 
 LATENCY = 3
-
-
-def leaf_of_tester(config: Configuration, directory) -> Leaf:
-    return Leaf(rect_tester, lambda: ports(
-        "clk hit at_mirror", steps=Steps(), rect=Rect(), eye=Eye(eye_bits(config)), signs=Signs(),
-        slope=Slope(exact_slope_bits(config)), mirror=mirror_of(config), numerator=unsigned(eye_bits(config) - 1),
-        denominator=unsigned(exact_slope_bits(config))
-    ), directory)  # fmt: skip
-
-
-def mirror_time(eye, slope, mirror) -> Fraction:
-    """Compute t of the mirror that the ray left last."""
-    axis, position = mirror
-    return Fraction(int(position - eye[axis]), int(slope[axis]))
 
 
 def mirrored_rays(random: np.random.Generator, config: Configuration, count: int):
@@ -42,7 +25,7 @@ def mirrored_rays(random: np.random.Generator, config: Configuration, count: int
     They are as the engine meets them, and as extreme as its widths allow.
     """
     reflections, steepest = config.reflections, (1 << exact_slope_bits(config)) - 1
-    while count > 0:
+    for _ in range(count):
         table = random_rectangles(random, count=8, closed=True)
         eye = random_camera(random, table).astype(np.int64)
         steep = random.choice([0, 1, 2, 99, 100, 160, 190, steepest, int(random.integers(steepest))], 3)
@@ -63,8 +46,21 @@ def mirrored_rays(random: np.random.Generator, config: Configuration, count: int
         chosen = random.choice(np.flatnonzero(table.visible), 4)
         for index in chosen:
             table = sharpened(random, table, int(index), eye, slope, mirror)
-        count -= 1
         yield table, set(chosen.tolist()), eye, slope, mirror
+
+
+def extreme_rays(config: Configuration):
+    """Yield the same for the furthest images of a camera and the steepest slopes, whose products need every bit."""
+    far, steepest = LAST * (config.reflections + 1), (1 << exact_slope_bits(config)) - 1
+    corners = np.array([[[0, 0, 0], [0, LAST, LAST]], [[0, 0, 0], [LAST, 0, LAST]], [[0, 0, LAST], [LAST, LAST, LAST]]])
+    table = Rectangles(corners, np.zeros((3, 3), dtype=np.uint8), np.ones(3, dtype=bool))
+    for place in (far, LAST - far):
+        for other in (far, LAST - far, 0):
+            for sign in (1, -1):
+                for axis in range(3):
+                    eye, slope = np.full(3, other), np.full(3, sign * steepest)
+                    eye[axis], slope[axis] = place, -steepest if place > 0 else steepest
+                    yield table, range(3), eye, slope, None
 
 
 @by_turn
@@ -72,76 +68,40 @@ def mirrored_rays(random: np.random.Generator, config: Configuration, count: int
 def test_rect_tester(reflections, turn, tmp_path, random):
     """The hit and its t; after two mirrors in one point, also hits in that point and at_mirror."""
     config = exact_config(reflections=reflections, turn=turn)
-    leaf = leaf_of_tester(config, tmp_path)
-    stimulus, expected, distance = [], [], 0
-    for table, chosen, eye, slope, mirror in mirrored_rays(random, config, 1500):
+    terms = {"numerator": eye_bits(config) - 1, "denominator": exact_slope_bits(config)}
+    leaf = leaf_of(rect_tester, tmp_path, config, rect=Rect, **terms)
+    stimulus, expected, distance, seen, corners = [], [], 0, set(), set()
+    for table, chosen, eye, slope, mirror in chain(mirrored_rays(random, config, 1500), extreme_rays(config)):
         met = {mirror[0]} if mirror else set()
         if mirror and reflections > 1 and random.random() < 0.5:
             met |= set(random.choice(3, int(random.integers(3))).tolist())
-        mask = {f"mirror_met_{axis}": int(place in met) for place, axis in enumerate(AXES)}
+        ray = by_axis("eye_", eye) | slope_inputs(slope) | by_axis("mirror_met_", (axis in met for axis in range(3)))
         for index in chosen:
             started = int(not stimulus or random.random() < 0.9)
-            stimulus.append(
-                {
-                    **sorted_rect(table, index, "rect"), **two_complement(eye, eye_bits(config), "eye"),
-                    **{name: value for name, value in mask.items() if name in leaf.given},
-                    **slope_inputs(slope), "mirror_active": int(mirror is not None),
-                    "mirror_axis": mirror[0] if mirror else int(random.integers(3)),
-                    "mirror_distance": distance, "steps_find_intersection": started,
-                }
-            )  # fmt: skip
+            mirrors = {"active": mirror is not None, "axis": mirror[0] if mirror else int(random.integers(3))}
+            stimulus.append({
+                **ray, **sorted_rect(table, index, "rect"), **named("mirror", mirrors), "mirror_distance": distance,
+                "steps_find_intersection": started,
+            })  # fmt: skip
             # The mirror distance is read a cycle after all other inputs.
             distance = abs(int(mirror[1] - eye[mirror[0]])) if mirror else int(random.integers(WORLD_SIZE))
-            hit, n, e = verdict(table, index, eye, slope, mirror, met)
-            meets = hit and mirror is not None and Fraction(n, e) == mirror_time(eye, slope, mirror)
-            expected.append((hit, n, e, meets) if started else None)
-    seen, corners = set(), set()
-    stimulus += [{"mirror_distance": distance, "steps_find_intersection": 0}] * LATENCY
-    outputs = leaf.run_both(stimulus, settled=LATENCY)
-    for cycle, wanted in enumerate(expected):
-        if wanted is None:
-            continue
-        output = outputs[cycle + LATENCY]
-        assert bool(output["hit"]) == wanted[0], stimulus[cycle]
-        if wanted[0]:
-            assert (output["numerator"], output["denominator"]) == wanted[1:3], stimulus[cycle]
-            assert bool(output["at_mirror"]) == wanted[3], stimulus[cycle]
-        corners.add(wanted[3])
-        seen.add((wanted[0], stimulus[cycle]["rect_axis"], stimulus[cycle]["mirror_active"]))
+            hit, n, e, at_mirror = verdict(table, index, eye, slope, mirror, met)
+            wanted = {"hit": hit} | ({"numerator": n, "denominator": e, "at_mirror": at_mirror} if hit else {})
+            expected.append(wanted if started else None)
+            if started:
+                corners.add(at_mirror)
+                seen.add((hit, int(table.axes[index]), mirror is not None))
     assert len(seen) == (12 if reflections else 6), "hits and misses on each axis, with a mirror and without"
     assert corners == {False, reflections > 0}, "hits in the mirror's plane and beyond it"
+    idle = {"mirror_distance": distance, "steps_find_intersection": 0}
+    check(leaf, driven(leaf, [*stimulus, *[idle] * LATENCY]), expected + [None] * LATENCY, LATENCY)
 
 
 @by_turn
 @by_reflections
-def test_the_widths_are_just_wide_enough(reflections, turn, tmp_path):
+def test_the_widths_are_just_wide_enough(reflections, turn):
     """The furthest image of a camera and its greatest products need every bit."""
-    config = exact_config(reflections=reflections, turn=turn)
     far = LAST * (reflections + 1)
-    assert eye_bits(config) == far.bit_length() + 1
+    assert eye_bits(exact_config(reflections=reflections, turn=turn)) == far.bit_length() + 1
     greatest = far * (450 * 512 if turn else 190)
     assert greatest.bit_length() == (27, 28, 29)[reflections] if turn else (17, 18, 19)[reflections]
-    leaf = leaf_of_tester(config, tmp_path)
-    steepest = (1 << exact_slope_bits(config)) - 1
-    corners = np.array([[[0, 0, 0], [0, LAST, LAST]], [[0, 0, 0], [LAST, 0, LAST]], [[0, 0, LAST], [LAST, LAST, LAST]]])
-    table = Rectangles(corners, np.zeros((3, 3), dtype=np.uint8), np.ones(3, dtype=bool))
-    stimulus, expected = [], []
-    for place in (far, -LAST * reflections):
-        for other in (far, -LAST * reflections, 0):
-            for sign in (1, -1):
-                for axis in range(3):
-                    eye = [other] * 3
-                    eye[axis] = place
-                    slope = [sign * steepest] * 3
-                    slope[axis] = -steepest if place > 0 else steepest
-                    for index in range(3):
-                        rect = sorted_rect(table, index, "rect")
-                        eyes = two_complement(eye, eye_bits(config), "eye")
-                        stimulus.append({**rect, **eyes, **slope_inputs(slope), "steps_find_intersection": 1})
-                        expected.append(verdict(table, index, eye, slope, None))
-    outputs = leaf.run_both([*stimulus, *[{}] * LATENCY], settled=LATENCY)
-    for cycle, wanted in enumerate(expected):
-        assert bool(outputs[cycle + LATENCY]["hit"]) == wanted[0], stimulus[cycle]
-        if wanted[0]:
-            assert (outputs[cycle + LATENCY]["numerator"], outputs[cycle + LATENCY]["denominator"]) == wanted[1:]
-    assert any(wanted[0] for wanted in expected)

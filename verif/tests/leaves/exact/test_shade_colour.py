@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `shade_colour`: colours in the light and in the dark."""
+"""Leaf tests of `shade_colour`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
-from vectors import ports
+from itertools import product
 
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
+from vectors import check, leaf_of
+
 from raycaster.rtl.common.records import Colour
 from raycaster.rtl.common.widths import RGB_BITS, SHADE_BITS
 from raycaster.rtl.exact.shade_colour import shade_colour
@@ -12,18 +12,12 @@ from raycaster.rtl.exact.shade_colour import shade_colour
 
 def test_shade_colour(tmp_path):
     """Every value of a channel with every shade; the three channels have different values."""
-    leaf = Leaf(
-        shade_colour,
-        lambda: ports("dark", colour=Colour(), shade=unsigned(SHADE_BITS), shaded=unsigned(RGB_BITS)),
-        tmp_path,
-    )
     stimulus, expected = [], []
-    for value in range(256):
-        for shade in range(4):
-            colour = (value, 255 - value, value ^ 0x5A)
-            for dark in (0, 1):
-                channels = dict(zip(("colour_red", "colour_green", "colour_blue"), colour, strict=True))
-                stimulus.append({**channels, "dark": dark, "shade": shade})
-                expected.append(bytes(shade * channel // 4 if dark else channel for channel in colour))
-    outputs = leaf.run_both(stimulus)
-    assert [output["shaded"].to_bytes(3, "big") for output in outputs] == expected
+    for value, shade, dark in product(range(256), range(4), (0, 1)):
+        colour = (value, 255 - value, value ^ 0x5A)
+        channels = dict(zip(("colour_red", "colour_green", "colour_blue"), colour, strict=True))
+        stimulus.append({**channels, "dark": dark, "shade": shade})
+        shaded = bytes(shade * channel // 4 if dark else channel for channel in colour)
+        expected.append({"shaded": int.from_bytes(shaded)})
+    leaf = leaf_of(shade_colour, tmp_path, colour=Colour, shade=SHADE_BITS, shaded=RGB_BITS)
+    check(leaf, stimulus, expected)

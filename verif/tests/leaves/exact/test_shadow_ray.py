@@ -3,14 +3,13 @@
 
 import numpy as np
 import pytest
-from vectors import LAST, ports
+from exact_vectors import exact_config
+from vectors import LAST, by_axis, check, leaf_of, named, slope_inputs
 
-from raycaster.configuration import WORLD_SIZE, configure
+from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.random_world import EXTREMES
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
-from raycaster.rtl.common.interfaces import Eye, Slope, Steps
-from raycaster.rtl.common.records import Signs, camera_of, surface_of
+from raycaster.rtl.common.interfaces import Slope
+from raycaster.rtl.common.records import Signs, surface_of
 from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, light_slope_bits
 from raycaster.rtl.exact.shadow_ray import shadow_ray
 
@@ -21,29 +20,13 @@ CASES = 200
 @pytest.mark.parametrize("reflections", [0, 2, 4])
 def test_shadow_ray(reflections, turn, tmp_path, random):
     """S = N - e L and the side of the light, for points at the world's corners, on its planes and anywhere."""
-    config = configure(engine="exact", reflections=reflections, turn=turn, light=True, allow_underrun=True)
+    config = exact_config(reflections=reflections, turn=turn, light=True)
     slope_bits, eyes = exact_slope_bits(config), eye_bits(config)
-    leaf = Leaf(
-        shadow_ray,
-        lambda: ports(
-            "clk facing",
-            steps=Steps(),
-            camera=camera_of(config),
-            eye=Eye(eyes),
-            signs=Signs(),
-            slope=Slope(slope_bits),
-            found_surface=surface_of(config),
-            found_distance=unsigned(eyes - 1),
-            found_slope=unsigned(slope_bits),
-            shadow_signs=Signs(),
-            shadow_slope=Slope(light_slope_bits(config)),
-        ),
-        tmp_path,
-    )
-    far, steepest = LAST * (reflections + 1), (1 << slope_bits) - 1
-    if not turn:
-        steepest = 190
-    stimulus, expected, sides = [], [], set()
+    shadow = {"shadow_signs": Signs, "shadow_slope": lambda: Slope(light_slope_bits(config))}
+    found = {"found_surface": lambda: surface_of(config), "found_distance": eyes - 1, "found_slope": slope_bits}
+    leaf = leaf_of(shadow_ray, tmp_path, config, **shadow, **found)
+    far, steepest = LAST * (reflections + 1), (1 << slope_bits) - 1 if turn else 190
+    stimulus, expected, sides = [], {}, set()
     while len(expected) < CASES:
         # A ray that is inside the world at n / e, often close to a corner or a border of it.
         axis = int(random.integers(3))
@@ -65,18 +48,11 @@ def test_shadow_ray(reflections, turn, tmp_path, random):
         if random.random() < 0.3:
             light[axis] = np.clip(plane + random.integers(-1, 2), 0, LAST)
         held = {"found_surface_axis": axis, "found_surface_position": plane, "found_distance": n, "found_slope": e}
-        for name, value, component in zip("xyz", eye.tolist(), slope.tolist(), strict=True):
-            held |= {f"eye_{name}": value % (1 << eyes), f"slope_d{name}": abs(component)}
-            held[f"signs_d{name}"] = int(component < 0)
-        held |= {f"camera_light_{name}": int(value) for name, value in zip("xyz", light, strict=True)}
+        held |= by_axis("eye_", eye) | slope_inputs(slope) | by_axis("camera_light_", light)
         stimulus += [{**held, "steps_aim": 1 << cycle >> 1} for cycle in range(5)] + [{**held, "steps_aim": 0}]
-        shadow = numerators - e * light
-        wanted = {f"shadow_slope_d{name}": abs(int(part)) for name, part in zip("xyz", shadow, strict=True)}
-        wanted |= {f"shadow_signs_d{name}": int(part < 0) for name, part in zip("xyz", shadow, strict=True)}
-        wanted["facing"] = int((light[axis] - plane) * -slope[axis] > 0)
-        expected.append((len(stimulus) - 1, wanted))
-        sides.add((wanted["facing"], int(np.sign(light[axis] - plane)), axis))
-    outputs = leaf.run_both(stimulus, settled=6)
-    for cycle, wanted in expected:
-        assert {name: outputs[cycle][name] for name in wanted} == wanted, stimulus[cycle]
+        facing = int((light[axis] - plane) * -slope[axis] > 0)
+        shadow_slope = slope_inputs(numerators - e * light)
+        expected[len(stimulus) - 1] = named("shadow", shadow_slope) | {"facing": facing}
+        sides.add((facing, int(np.sign(light[axis] - plane)), axis))
+    check(leaf, stimulus, expected, settled=6)
     assert len(sides) == 15

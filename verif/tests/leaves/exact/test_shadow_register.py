@@ -5,13 +5,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from vectors import ports
+from vectors import check, leaf_of
 
 from raycaster.configuration import WORLD_SIZE, configure
 from raycaster.engines.exact import AIM_CYCLES
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
-from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, light_slope_bits
 from raycaster.rtl.exact.shadow_register import shadow_register
 
@@ -23,17 +20,8 @@ LAST_AIM = 1 << AIM_CYCLES - 1
 def test_shadow_register(turn, tmp_path, random):
     """Hits before, at and beyond the point, and next to it by one unit of either product."""
     config = configure(engine="exact", turn=turn, light=True)
-    leaf = Leaf(
-        shadow_register,
-        lambda: ports(
-            "clk in_question hit looking shaded",
-            steps=Steps(),
-            numerator=unsigned(eye_bits(config) - 1),
-            denominator=unsigned(light_slope_bits(config)),
-            found_slope=unsigned(exact_slope_bits(config)),
-        ),
-        tmp_path,
-    )
+    widths = {"numerator": eye_bits(config) - 1, "denominator": light_slope_bits(config)}
+    leaf = leaf_of(shadow_register, tmp_path, config, **widths, found_slope=exact_slope_bits(config))
     steepest, most = (1 << exact_slope_bits(config)) - 1, (1 << light_slope_bits(config)) - 1
     stimulus, expected, shaded, looking, kinds = [], [], None, None, set()
     e = 1
@@ -53,7 +41,7 @@ def test_shadow_register(turn, tmp_path, random):
                 "hit": hit, "numerator": n, "denominator": denominator, "found_slope": e,
             }
         )  # fmt: skip
-        expected.append((shaded, looking))
+        expected.append({"shaded": shaded, "looking": looking})
         if over:
             looking = 0
         elif aim == LAST_AIM:
@@ -64,8 +52,5 @@ def test_shadow_register(turn, tmp_path, random):
             between = Fraction(n, denominator) < Fraction(1, e)
             kinds.add((between, n * e - denominator if abs(n * e - denominator) < 2 else None))
             shaded |= int(between)
-    outputs = leaf.run_both(stimulus, settled=1)
-    for cycle, wanted in enumerate(expected):
-        if None not in wanted:
-            assert (outputs[cycle]["shaded"], outputs[cycle]["looking"]) == wanted, cycle
+    check(leaf, stimulus, expected, settled=1)
     assert {(True, -1), (False, 0), (False, 1)} <= kinds

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `shadow_sequencer`: the order of shadow passes, compared with the contract."""
+"""Leaf tests of `shadow_sequencer`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
-from vectors import ports
+from vectors import check, leaf_of
 
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.exact.shadow_sequencer import shadow_sequencer
 
@@ -14,19 +12,8 @@ AIM = 4
 
 def test_shadow_sequencer(tmp_path, random):
     """Passes of any length and outcome: nothing in question, decided early, or tested to the last rectangle."""
-    leaf = Leaf(
-        shadow_sequencer,
-        lambda: ports("clk reset_ray_caster any_in_question from_light", shadow_pass=ShadowPass(), aim=unsigned(AIM)),
-        tmp_path,
-    )  # fmt: skip
-    names = (
-        "aim",
-        "from_light",
-        "shadow_pass_awaited",
-        "shadow_pass_comes_next",
-        "shadow_pass_start",
-        "shadow_pass_stop",
-    )
+    leaf = leaf_of(shadow_sequencer, tmp_path, shadow_pass=ShadowPass, aim=AIM)
+    names = ("aim", "from_light", *(f"shadow_pass_{name}" for name in ("awaited", "comes_next", "start", "stop")))
     stimulus, expected = [], []
 
     def cycle(traced: int, question: int | None, *values: int, reset: int = 0) -> None:
@@ -51,8 +38,7 @@ def test_shadow_sequencer(tmp_path, random):
         if not question:
             outcomes.add("none")
             continue
-        length = int(random.integers(1, 6))
-        decided = int(random.integers(1, 8))
+        length, decided = int(random.integers(1, 6)), int(random.integers(1, 8))
         for number in range(1, length + 1):
             in_question, last = int(number < decided), number == length
             stops = not in_question and not last
@@ -64,7 +50,5 @@ def test_shadow_sequencer(tmp_path, random):
                 break
         else:
             outcomes.add("whole")
-    outputs = leaf.run_both(stimulus, settled=1)
-    for number, wanted in enumerate(expected[1:], 1):
-        assert outputs[number] == wanted, (number, stimulus[number])
+    check(leaf, stimulus, expected, settled=1)
     assert outcomes == {"none", "decided", "whole"}

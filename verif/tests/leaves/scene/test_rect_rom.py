@@ -1,23 +1,24 @@
 # SPDX-License-Identifier: MIT
 """Leaf tests of `rect_rom`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
-from __future__ import annotations
-
 import dataclasses
 import re
 
 import numpy as np
 import pytest
 from scene_vectors import fixed_config
+from vectors import check, leaf_of
 
 from raycaster.fixed import FixedRectangle, varying_bits
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import bit
-from raycaster.rtl.common.interfaces import Rects
 from raycaster.rtl.common.widths import index_bits
 from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.tools import run_yosys
 from raycaster.verif.seeds import repeat, seed
+
+FIELDS = [field.name for field in dataclasses.fields(FixedRectangle)]
+
+LOOKS = {"materials": ("mirror",), "patterns": ("kind", "cell", "colour_2")}
+"""Fields of each option."""
 
 
 @pytest.mark.slow_sets("2-", "7", "8")
@@ -33,27 +34,20 @@ from raycaster.verif.seeds import repeat, seed
     ids=["1", "2", "7", "8", "12-alike", "32", "7-materials", "3-patterns", "8-alike-materials-patterns"],
 )  # fmt: skip
 def test_rect_rom(count, alike, options, engine, latency, tmp_path):
+    """Each fetched rectangle after its latency; the port keeps the last one."""
     config = fixed_config(count, engine, False, alike, **options)
-    leaf = Leaf(rect_rom, lambda: {"clk": bit(), "rects": Rects(config), "config": config}, tmp_path)
-    random = np.random.default_rng(seed())
-    stimulus = [
-        {"rects_index": int(random.integers(count)), "rects_fetch": int(random.integers(2))} for _ in range(300)
-    ]
-    outputs = leaf.run_both(stimulus, settled=8)
-    looks = {"materials": ("mirror",), "patterns": ("kind", "cell", "colour_2")}
-    left_out = [name for option, names in looks.items() if option not in options for name in names]
-    fields = [field.name for field in dataclasses.fields(FixedRectangle) if field.name not in left_out]
-    assert set(outputs[-1]) == {f"rects_rect_{name}" for name in fields}
-    held, late = None, None
-    for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):
-        shown = held if latency == 1 else late
-        if cycle >= 8 and shown is not None:
-            for name in fields:
-                assert output[f"rects_rect_{name}"] == config.fixed.column(name)[shown], (cycle, name, repeat())
-        late = held
-        if inputs["rects_fetch"]:
-            held = inputs["rects_index"]
-    assert held is not None
+    leaf, random = leaf_of(rect_rom, tmp_path, config), np.random.default_rng(seed())
+    left_out = [name for option, names in LOOKS.items() if option not in options for name in names]
+    fields = [name for name in FIELDS if name not in left_out]
+    assert set(leaf.seen) == {f"rects_rect_{name}" for name in fields}
+    stimulus, expected, shown = [], [None] * latency, None
+    for _ in range(300):
+        stimulus.append({"rects_index": int(random.integers(count)), "rects_fetch": int(random.integers(2))})
+        if stimulus[-1]["rects_fetch"]:
+            index = stimulus[-1]["rects_index"]
+            shown = {f"rects_rect_{name}": config.fixed.column(name)[index] for name in fields}
+        expected.append(shown)
+    check(leaf, stimulus, expected[:300], settled=8)
 
 
 @pytest.mark.parametrize("engine", ["seed", "beam"])
@@ -63,12 +57,11 @@ def test_rect_rom_needs_no_registers_for_equal_fields(engine, tmp_path):
         config = fixed_config(count, engine, False, alike)
         directory = tmp_path / str(count)
         directory.mkdir()
-        Leaf(rect_rom, lambda config=config: {"clk": bit(), "rects": Rects(config), "config": config}, directory)
+        leaf_of(rect_rom, directory, config)
         run_yosys(directory, "alike", ["read_verilog rect_rom.v", "synth -top rect_rom", "tee -o stat.txt stat"])
         kinds = re.findall(r"^ +(\d+) .*_DFF\w*_|\$_DFF\w*_ +(\d+)", (directory / "stat.txt").read_text(), re.M)
         registers = sum(int(number) for pair in kinds for number in pair if number)
-        columns = [config.fixed.column(field.name) for field in dataclasses.fields(FixedRectangle)]
-        most = sum(varying_bits(column).bit_count() for column in columns)
+        most = sum(varying_bits(config.fixed.column(name)).bit_count() for name in FIELDS)
         held = index_bits(config) if engine == "beam" and count > 1 else 0
         assert registers <= most + held, repeat()
         assert (registers > 0) == (count > 1)

@@ -3,12 +3,10 @@
 
 import pytest
 from arithmetic_vectors import SLOPE_CORNERS, VECTORS, arithmetic, position_corners
-from vectors import ports
+from vectors import check, leaf_of
 
 from raycaster.golden import seed_engine
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import signed, unsigned
-from raycaster.rtl.common.interfaces import Steps
+from raycaster.hdl.signals import Signed
 from raycaster.rtl.common.widths import SLOPE_BITS, position_bits
 from raycaster.rtl.seed.intersection_helper import intersection_helper
 
@@ -18,12 +16,10 @@ POWERS = tuple(1 << place for place in range(SLOPE_BITS))
 @pytest.mark.slow_sets("F1", "F4")
 @arithmetic
 def test_intersection_helper(config, tmp_path, random):
+    """Corner cases, random operands, products with every bit visible, and distances with a single bit set."""
     width = position_bits(config)
-    leaf = Leaf(intersection_helper, lambda: ports(
-        "clk b_negative e_negative valid towards", steps=Steps(), a=unsigned(width), b=unsigned(SLOPE_BITS),
-        c=unsigned(width), d=unsigned(width), e=unsigned(SLOPE_BITS), value=signed(width + 2),
-        quotient=unsigned(width), distance=unsigned(width), config=config
-    ), tmp_path)  # fmt: skip
+    widths = dict.fromkeys(("a", "c", "d", "quotient", "distance"), width) | dict.fromkeys("be", SLOPE_BITS)
+    leaf = leaf_of(intersection_helper, tmp_path, config, **widths, value=Signed(width + 2))
     corners = position_corners(config)
 
     def position() -> int:
@@ -44,28 +40,25 @@ def test_intersection_helper(config, tmp_path, random):
             distance = int(random.integers(1 << width)) | 1
         d = c - distance if c >= distance else min(c + distance, (1 << width) - 1)
         operands.append((position(), b * int(random.choice([-1, 1])), c, d, e * int(random.choice([-1, 1]))))
-    steps = config.divider_steps
+    steps, valid_seen = config.divider_steps, 0
     idle = {"steps_find_intersection": 0, "steps_load_divider": 0, "steps_store_quotient": 0}
     stimulus = [dict(idle) for _ in range((len(operands) + 2) * steps + 6)]
+    expected = [{} for _ in stimulus]
     for number, (a, b, c, d, e) in enumerate(operands):
         start = number * steps
-        stimulus[start] |= {"steps_find_intersection": 1, "b": abs(b), "b_negative": int(b < 0)}
-        stimulus[start] |= {"c": c, "d": d, "e": abs(e), "e_negative": int(e < 0)}
+        stimulus[start] |= {"steps_find_intersection": 1, "b": abs(b), "b_negative": b < 0}
+        stimulus[start] |= {"c": c, "d": d, "e": abs(e), "e_negative": e < 0}
         stimulus[start + 2]["steps_load_divider"] = 1
-        stimulus[start + 2 + steps]["steps_store_quotient"] = 1
-        stimulus[start + 3 + steps]["a"] = a
-    outputs = leaf.run_both(stimulus, settled=steps + 4)
-    valid_seen = 0
-    for number, (a, b, c, d, e) in enumerate(operands):
+        stored = start + 2 + steps
+        stimulus[stored]["steps_store_quotient"] = 1
+        stimulus[stored + 1]["a"] = a
         value, valid = seed_engine.intersect(a, b, c, d, e, config.fraction_bits, config.rounding)
-        stored = outputs[number * steps + steps + 3]
-        added = outputs[number * steps + steps + 4]
-        vector = {"a": a, "b": b, "c": c, "d": d, "e": e}
-        assert bool(stored["valid"]) == bool(valid), vector
-        assert bool(outputs[number * steps + 1]["towards"]) == ((c - d) * e > 0), vector
+        expected[start + 1]["towards"] = (c - d) * e > 0
+        expected[stored + 1]["valid"] = valid
         if valid:
             valid_seen += 1
-            assert added["value"] == int(value) % (1 << (width + 2)), vector
-            assert stored["quotient"] == abs(int(value) - a), vector
-            assert stored["distance"] == abs(c - d), vector
+            expected[stored + 1] |= {"quotient": abs(int(value) - a), "distance": abs(c - d)}
+            expected[stored + 2]["value"] = value
+    outputs = check(leaf, stimulus, expected, settled=steps + 4)
+    assert outputs[1]["towards"] == expected[1]["towards"]
     assert valid_seen > VECTORS // 10

@@ -2,43 +2,31 @@
 """Leaf tests of `ray_mem`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
-from unit_vectors import any_config
-from vectors import AXES, ports
+from unit_vectors import unit_config
+from vectors import by_axis, check, leaf_of
 
 from raycaster.golden.random_world import EXTREMES
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
-from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.records import Origin, Ray
 from raycaster.rtl.common.widths import AXIS_BITS, position_bits
 from raycaster.rtl.seed.ray_mem import ray_mem
 
-fractions = pytest.mark.parametrize(
-    "config", [any_config(fraction_bits=bits) for bits in (0, 3, 8)], ids=lambda config: f"F{config.fraction_bits}"
+
+@pytest.mark.parametrize(
+    "config", [unit_config(fraction_bits=bits) for bits in (0, 3, 8)], ids=lambda config: f"F{config.fraction_bits}"
 )
-
-
-@fractions
 def test_ray_mem(config, tmp_path, random):
-    leaf = Leaf(ray_mem, lambda: ports(
-        "clk", steps=Steps(), found_axis=unsigned(AXIS_BITS), found_point=Origin(config), ray=Ray(config),
-        reflected=Ray(config)
-    ), tmp_path)  # fmt: skip
+    """The hit point, and the ray's signs with one reversed; kept until the next step."""
+    rays = dict.fromkeys(("ray", "reflected"), lambda: Ray(config))
+    leaf = leaf_of(ray_mem, tmp_path, config, **rays, found_axis=AXIS_BITS, found_point=lambda: Origin(config))
     values = [*EXTREMES, (1 << position_bits(config)) - 1]
-    stimulus = [
-        {
-            "steps_store_ray": int(number == 0 or random.random() < 0.7),
-            "found_axis": number % 3,
-            **{f"found_point_{axis}": int(random.choice(values)) for axis in AXES},
-            **{f"ray_d{axis}": int(random.integers(2)) for axis in AXES},
-            **{f"ray_{axis}": int(random.choice(values)) for axis in AXES},
-        }
-        for number in range(300)
-    ]
-    outputs = leaf.run_both(stimulus, settled=1)
-    for inputs, output in zip(stimulus[:-1], outputs[1:], strict=True):
-        if inputs["steps_store_ray"]:
-            expected = {f"reflected_{axis}": inputs[f"found_point_{axis}"] for axis in AXES}
-            for number, axis in enumerate(AXES):
-                expected[f"reflected_d{axis}"] = inputs[f"ray_d{axis}"] ^ (inputs["found_axis"] == number)
-        assert output == expected, inputs
+    stimulus, expected = [], []
+    for number in range(300):
+        store, found = int(number == 0 or random.random() < 0.7), number % 3
+        point = [int(random.choice(values)) for _ in range(3)]
+        signs = [int(random.integers(2)) for _ in range(3)]
+        ray = by_axis("ray_d", signs) | by_axis("ray_", [int(random.choice(values)) for _ in range(3)])
+        stimulus.append({"steps_store_ray": store, "found_axis": found, **by_axis("found_point_", point), **ray})
+        turned = [sign ^ (axis == found) for axis, sign in enumerate(signs)]
+        reflected = by_axis("reflected_", point) | by_axis("reflected_d", turned)
+        expected.append(reflected if store else expected[-1])
+    check(leaf, stimulus, [None, *expected[:-1]], settled=1)

@@ -2,8 +2,8 @@
 """Leaf tests of `ray_unit`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
-from engine_vectors import any_config, check_ray_unit, ray_unit_leaf
-from vectors import config_id
+from engine_vectors import check_ray_unit, ray_unit_leaf
+from vectors import any_config, config_id
 
 
 @pytest.mark.slow_sets(

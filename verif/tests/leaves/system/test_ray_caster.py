@@ -5,19 +5,15 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from engine_vectors import any_config, colour_word, fate_of, usable_mask, visible_indices
+from engine_vectors import fate_of, scene_inputs, usable_of
 from fates import may_hit_mask
 from hard_scenes import pixel_word, traced_scene, tracer
-from vectors import AXES, config_id, ports
+from vectors import any_config, basis_inputs, check, check_fetches, designs, leaf_of
 
 from raycaster.configuration import Configuration
 from raycaster.engines.engine import SETUP_LATENCY
 from raycaster.golden.random_world import random_basis
 from raycaster.golden.rays import primary_slopes
-from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import unsigned
-from raycaster.rtl.common.interfaces import Picture, Place, Rects
-from raycaster.rtl.common.records import camera_of
 from raycaster.rtl.common.widths import pixel_bits
 from raycaster.rtl.system.ray_caster import ray_caster
 from raycaster.scene import UNTURNED
@@ -69,33 +65,26 @@ def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int
     "seed-vga240-u4-r5-m2-f0t-d3-c8-k0",
     "seed-vga240-u5",
 )
-@pytest.mark.parametrize(
-    "config",
-    [
-        any_config(units=1, rectangles=4, reflections=1, divider_bits=3),
-        any_config(units=2, rectangles=8, reflections=2, fraction_bits=4, rounding="nearest", divider_bits=3),
-        any_config(units=5, rectangles=5, reflections=1, fraction_bits=1, divider_bits=2, colour_bits=4),
-        any_config(engine="exact", units=1, rectangles=4, reflections=2),
-        any_config(engine="exact", units=2, rectangles=8, reflections=1),
-        any_config(engine="exact", units=5, rectangles=7, reflections=0, colour_bits=4),
-        any_config(units=4, rectangles=6, reflections=2, divider_bits=1, culling=False),
-        any_config(engine="exact", units=4, rectangles=6, reflections=2, culling=True),
-        any_config(units=2, rectangles=6, reflections=2, divider_bits=3, materials=True, patterns=True),
-        any_config(units=4, rectangles=5, reflections=2, divider_bits=3, materials=True, culling=False),
-        any_config(engine="exact", units=2, rectangles=6, reflections=2, materials=True),
-        any_config(engine="exact", units=4, rectangles=6, reflections=1, turn=True, culling=True),
-    ],
-    ids=config_id,
+@designs(
+    any_config(units=1, rectangles=4, reflections=1, divider_bits=3),
+    any_config(units=2, rectangles=8, reflections=2, fraction_bits=4, rounding="nearest", divider_bits=3),
+    any_config(units=5, rectangles=5, reflections=1, fraction_bits=1, divider_bits=2, colour_bits=4),
+    any_config(engine="exact", units=1, rectangles=4, reflections=2),
+    any_config(engine="exact", units=2, rectangles=8, reflections=1),
+    any_config(engine="exact", units=5, rectangles=7, reflections=0, colour_bits=4),
+    any_config(units=4, rectangles=6, reflections=2, divider_bits=1, culling=False),
+    any_config(engine="exact", units=4, rectangles=6, reflections=2, culling=True),
+    any_config(units=2, rectangles=6, reflections=2, divider_bits=3, materials=True, patterns=True),
+    any_config(units=4, rectangles=5, reflections=2, divider_bits=3, materials=True, culling=False),
+    any_config(engine="exact", units=2, rectangles=6, reflections=2, materials=True),
+    any_config(engine="exact", units=4, rectangles=6, reflections=1, turn=True, culling=True),
 )
 def test_ray_caster(config, tmp_path, random):
     """Pixels of both engines, and the cycle of done.
 
     With culling, a group follows others of its frame, during which its rectangles were tested or not.
     """
-    leaf = Leaf(ray_caster, lambda: ports(
-        "clk reset_ray_caster enable done", place=Place(config), camera=camera_of(config), picture=Picture(),
-        rects=Rects(config), pixels=unsigned(config.units * pixel_bits(config)), config=config
-    ), tmp_path)  # fmt: skip
+    leaf = leaf_of(ray_caster, tmp_path, config, pixels=config.units * pixel_bits(config))
     predicts = config.culling and not config.turn
     stimulus, results, shown, culled = [], [], {}, 0
     for _ in range((160 if config.engine == "exact" else 80) if config.units == 1 else 12):
@@ -105,16 +94,8 @@ def test_ray_caster(config, tmp_path, random):
         last = int(random.integers(1, len(groups))), int(random.integers(config.groups))
         camera, table, background, reflections, _ = traced_scene(random, config, groups[last])
         trace = tracer(config, camera=camera, background=background, reflections=reflections)
-        usable = visible_indices(table)
-        scene = {
-            "picture_background": colour_word(background),
-            "picture_reflections": reflections,
-            "rects_usable": usable_mask(table),
-            **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
-        }
-        if config.turn:
-            for name, vector in zip(("forward", "right", "up"), basis, strict=True):
-                scene |= {f"camera_{name}_{axis}": part for axis, part in zip(AXES, vector, strict=True)}
+        usable = usable_of(table)
+        scene = scene_inputs(camera, table, background, reflections) | (basis_inputs(basis) if config.turn else {})
         rects = {index: sorted_rect(table, index, "rects_rect", config) for index in usable}
         following, at_hand = None, 0
         places = [*places_before(random, config, last), last] if config.culling else [last]
@@ -140,22 +121,17 @@ def test_ray_caster(config, tmp_path, random):
             # Within a frame, the cycle of done is the first of a reset.
             stimulus[-1]["reset_ray_caster"] = int(place != last)
             colours = [pixel_word(config, colour) for colour in golden.colours]
-            case = f"group {place} of {places}, camera {camera}, corners {table.corners.tolist()}"
-            results.append((len(stimulus) - 1, colours, case))
+            results.append((len(stimulus) - 1, colours))
             # The first group copies the rectangles; the others test them if they take long enough.
             tests = place != (0, 0) and len(cycles) >= config.rectangles + SETUP_LATENCY
             following = place_after(config, place) if tests else None
         stimulus.append({})
-        results.append((len(stimulus) - 1, *results[-1][1:]))
-    outputs = leaf.run_both(stimulus, settled=results[0][0])
-    width = pixel_bits(config)
-    done = {cycle for cycle, *_ in results}
-    for cycle, colours, case in results:
-        assert outputs[cycle]["done"], case
-        assert outputs[cycle - 1]["done"] == (cycle - 1 in done), case
-        units = [outputs[cycle]["pixels"] >> width * unit & (1 << width) - 1 for unit in range(config.units)]
-        assert units == colours, case
-    for cycle, index in shown.items():
-        before = next(past for past in range(cycle - 1, -1, -1) if outputs[past]["rects_fetch"])
-        assert outputs[before]["rects_index"] == index, f"cycle {cycle}: fetched another rectangle"
+        results.append((len(stimulus) - 1, results[-1][1]))
+    width, expected = pixel_bits(config), {}
+    for cycle, colours in results:
+        pixels = sum(colour << width * unit for unit, colour in enumerate(colours))
+        expected.setdefault(cycle - 1, {"done": 0})
+        expected[cycle] = {"done": 1, "pixels": pixels}
+    outputs = check(leaf, stimulus, expected, settled=results[0][0])
+    check_fetches(outputs, shown, "rects_")
     assert bool(culled) == predicts, "rectangles must be culled exactly if the design predicts"

@@ -8,15 +8,14 @@ import pytest
 from engine_vectors import (
     SMALL_SCREEN,
     TINY_SCREEN,
-    doubled,
+    check_frames,
     golden_words,
-    monitored,
     scene_in_view,
     small_config,
     start_screen_cycle,
 )
 from hard_scenes import rectangles_in_view, tracer, with_looks
-from vectors import AXES, config_id, ports
+from vectors import AXES, designs
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.engines import model_of
@@ -24,13 +23,14 @@ from raycaster.golden.random_world import random_basis
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.hdl.leaf import Leaf
-from raycaster.program import basis_fields
+from raycaster.program import basis_fields, rectangle_fields
 from raycaster.registers import register_map
 from raycaster.rtl.system.ports import module_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.scene import UNTURNED, Basis
 from raycaster.screens import Span
 from raycaster.sim.register_model import RegisterFile, Request
+from raycaster.verif.random_scenes import rectangle_of
 
 LONG_BLANKING = replace(SMALL_SCREEN, horizontal=Span(32, 8, 24, 44, active_high=False))
 """A screen with enough blanking for a beam engine whose camera can turn to set up a line."""
@@ -79,22 +79,13 @@ class Bus:
         self, camera, background, reflections: int, table: Rectangles, run: bool = True, basis: Basis = UNTURNED
     ) -> None:
         self.write("camera", **dict(zip(AXES, camera, strict=True)))
-        if self.config.turn:
-            for name, fields in basis_fields(basis):
-                self.write(name, **fields)
+        for name, fields in basis_fields(basis) if self.config.turn else ():
+            self.write(name, **fields)
         self.write("background", **dict(zip(("red", "green", "blue"), background, strict=True)))
-        for index, (corners, colour, enabled) in enumerate(
-            zip(table.corners, table.colours, table.enabled, strict=True)
-        ):
-            for number, corner in enumerate(corners):
-                self.write(f"rectangle[{index}].corner_{number}", **dict(zip(AXES, corner, strict=True)))
-            channels, channels_2 = (
-                dict(zip(("red", "green", "blue"), one, strict=True)) for one in (colour, table.colours_2[index])
-            )
-            if self.config.patterns:
-                cell = int(table.cells[index]).bit_length() - 4
-                self.write(f"rectangle[{index}].pattern", kind=table.kinds[index], cell=cell, **channels_2)
-            self.write(f"rectangle[{index}].surface", enable=enabled, mirror=table.mirrors[index], **channels)
+        looks = [name for name in ("materials", "patterns") if getattr(self.config, name)]
+        for index, enabled in enumerate(table.enabled):
+            for name, fields in rectangle_fields(index, rectangle_of(table, index, looks), self.config):
+                self.write(name, **fields | ({"enable": enabled} if "enable" in fields else {}))
         self.write("control", run=run, commit=1, reflections=reflections)
 
 
@@ -124,21 +115,17 @@ def check_bus(config: Configuration, stimulus: list[dict[str, int]], outputs: li
         "seed-tiny4-u4-r3-m1-f0t-d1-c8-materials-patterns",
     ],
 )
-@pytest.mark.parametrize(
-    "config",
-    [
-        small_config(units=4, rectangles=3, reflections=1),
-        small_config(units=4, rectangles=2, reflections=2, fraction_bits=4, rounding="nearest", colour_bits=4),
-        small_config(units=2, rectangles=5, reflections=0, divider_bits=3, colour_bits=6),
-        small_config(engine="beam", rectangles=3, reflections=1, scale=1),
-        small_config(engine="beam", rectangles=2, reflections=2, scale=2, colour_bits=4),
-        small_config(units=4, rectangles=3, reflections=1, materials=True, patterns=True),
-        small_config(engine="exact", units=4, rectangles=3, reflections=2, turn=True, materials=True, patterns=True),
-        small_config(
-            LONG_BLANKING, engine="beam", rectangles=2, reflections=1, scale=1, turn=True, materials=True, patterns=True
-        ),
-    ],
-    ids=config_id,
+@designs(
+    small_config(units=4, rectangles=3, reflections=1),
+    small_config(units=4, rectangles=2, reflections=2, fraction_bits=4, rounding="nearest", colour_bits=4),
+    small_config(units=2, rectangles=5, reflections=0, divider_bits=3, colour_bits=6),
+    small_config(engine="beam", rectangles=3, reflections=1, scale=1),
+    small_config(engine="beam", rectangles=2, reflections=2, scale=2, colour_bits=4),
+    small_config(units=4, rectangles=3, reflections=1, materials=True, patterns=True),
+    small_config(engine="exact", units=4, rectangles=3, reflections=2, turn=True, materials=True, patterns=True),
+    small_config(
+        LONG_BLANKING, engine="beam", rectangles=2, reflections=1, scale=1, turn=True, materials=True, patterns=True
+    ),
 )
 def test_ray_caster_module(config, tmp_path, random):
     """Two scenes over the bus, one shown after the other; every output in every cycle, and every pixel."""
@@ -169,17 +156,12 @@ def test_ray_caster_module(config, tmp_path, random):
     for name in ("status", "cycles", "engine", "size"):
         bus.read(name)
     bus.wait(60)
-    leaf = Leaf(ray_caster_module, lambda: ports("", **module_ports(config), config=config), tmp_path)
+    leaf = Leaf(ray_caster_module, lambda: module_ports(config) | {"config": config}, tmp_path)
     outputs = leaf.run_both(bus.stimulus, settled=2)
 
-    frames = monitored(outputs[2:], config)
-    assert len(frames) == 2
-    for number, (frame, picture) in enumerate(zip(frames, pictures, strict=True)):
-        assert np.array_equal(frame, doubled(config, picture)), f"frame {number}"
-    answers = {}
+    check_frames(outputs[2:], config, pictures)
+    answers = {name: bus.registers[name].unpack(outputs[cycle]["avs_s0_readdata"]) for name, cycle in bus.reads.items()}
     assert check_bus(config, bus.stimulus, outputs) == len(bus.reads)
-    for name, cycle in bus.reads.items():
-        answers[name] = bus.registers[name].unpack(outputs[cycle]["avs_s0_readdata"])
     assert answers["status"] == {"busy": 0, "underrun": 0, "bad_rectangle": 0, "frame": 2}
     assert answers["cycles"]["group"] <= config.group_cycles
     assert answers["size"] == {"units": config.units, "rectangles": config.rectangles, "rows": config.rows}
@@ -187,13 +169,9 @@ def test_ray_caster_module(config, tmp_path, random):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "config",
-    [
-        small_config(TINY_SCREEN, units=2, rectangles=3, reflections=1, divider_bits=2),
-        small_config(TINY_SCREEN, engine="beam", rectangles=3, reflections=1, scale=2),
-    ],
-    ids=config_id,
+@designs(
+    small_config(TINY_SCREEN, units=2, rectangles=3, reflections=1, divider_bits=2),
+    small_config(TINY_SCREEN, engine="beam", rectangles=3, reflections=1, scale=2),
 )
 def test_ray_caster_module_scenes(config, tmp_path, random):
     """One scene per frame over a bus that is never idle: words are read back, and written in part.
@@ -230,10 +208,7 @@ def test_ray_caster_module_scenes(config, tmp_path, random):
         bus.write_scene(camera, background, reflections, table, run)
         traffic(start + 1)
     bus.wait(screen.frame_cycles)
-    leaf = Leaf(ray_caster_module, lambda: ports("", **module_ports(config), config=config), tmp_path)
+    leaf = Leaf(ray_caster_module, lambda: module_ports(config) | {"config": config}, tmp_path)
     outputs = leaf.run_both(bus.stimulus, settled=2)
     assert check_bus(config, bus.stimulus, outputs) > 1000
-    frames = monitored(outputs[2:], config)
-    assert len(frames) == len(pictures)
-    for number, (frame, picture) in enumerate(zip(frames, pictures, strict=True)):
-        assert np.array_equal(frame, doubled(config, picture)), f"frame {number}"
+    check_frames(outputs[2:], config, pictures)

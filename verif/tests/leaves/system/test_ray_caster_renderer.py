@@ -8,24 +8,21 @@ import numpy as np
 import pytest
 from engine_vectors import (
     TINY_SCREEN,
-    colour_word,
-    doubled,
+    check_frames,
     golden_words,
-    monitored,
     scene_in_view,
+    scene_inputs,
     small_config,
     start_screen_cycle,
-    usable_mask,
 )
 from hard_scenes import pixel_word
-from vectors import AXES, config_id, ports
+from vectors import designs, leaf_of, plain
 
 from raycaster.configuration import Configuration
 from raycaster.golden.engines import model_of
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.hdl.leaf import Leaf
-from raycaster.rtl.common.interfaces import Picture, Progress, Rects, vga_of
 from raycaster.rtl.common.records import Point
 from raycaster.rtl.system.ray_caster_module import RENDERERS
 from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
@@ -46,27 +43,21 @@ COARSE = Screen(
 
 
 def renderer_leaf(config: Configuration, directory) -> Leaf:
-    return Leaf(RENDERERS.get(config.engine, ray_caster_renderer), lambda: ports(
-        "clk reset", picture=Picture(), camera=Point(), rects=Rects(config), progress=Progress(), vga=vga_of(config),
-        config=config
-    ), directory)  # fmt: skip
+    """Make a leaf of the engine's renderer."""
+    return leaf_of(RENDERERS.get(config.engine, ray_caster_renderer), directory, config, camera=Point)
 
 
 @pytest.mark.slow_sets("seed-tiny4-u4-r1-m2")
-@pytest.mark.parametrize(
-    "config",
-    [
-        small_config(units=4, rectangles=1, reflections=1, colour_bits=8, culling=False),
-        small_config(units=2, rectangles=1, reflections=0, fraction_bits=4, rounding="nearest", culling=False),
-        small_config(units=4, rectangles=1, reflections=2, divider_bits=3, colour_bits=2, culling=False),
-        small_config(units=4, rectangles=1, reflections=2, colour_bits=4),
-        small_config(COARSE, units=4, rectangles=1, reflections=1, culling=False),
-        # 16 groups of 27 cycles each; a row of 336 cycles has time for twelve.
-        small_config(
-            units=1, rectangles=1, reflections=0, fraction_bits=8, divider_bits=1, allow_underrun=True, culling=False
-        ),
-    ],
-    ids=config_id,
+@designs(
+    small_config(units=4, rectangles=1, reflections=1, colour_bits=8, culling=False),
+    small_config(units=2, rectangles=1, reflections=0, fraction_bits=4, rounding="nearest", culling=False),
+    small_config(units=4, rectangles=1, reflections=2, divider_bits=3, colour_bits=2, culling=False),
+    small_config(units=4, rectangles=1, reflections=2, colour_bits=4),
+    small_config(COARSE, units=4, rectangles=1, reflections=1, culling=False),
+    # 16 groups of 27 cycles each; a row of 336 cycles has time for twelve.
+    small_config(
+        units=1, rectangles=1, reflections=0, fraction_bits=8, divider_bits=1, allow_underrun=True, culling=False
+    ),
 )
 def test_ray_caster_renderer(config, tmp_path, random):
     """One rectangle, so the memory's answer never changes; the first frame shows none, the third is black."""
@@ -79,18 +70,14 @@ def test_ray_caster_renderer(config, tmp_path, random):
         np.ones(1, dtype=bool),
     )
     background = random.integers(1, 256, size=3)
-    scene = {
-        "picture_background": colour_word(background),
-        "picture_reflections": config.reflections,
-        **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
-        **sorted_rect(table, 0, "rects_rect"),
-    }
+    scene = scene_inputs(camera, table, background, config.reflections) | sorted_rect(table, 0, "rects_rect")
+    del scene["rects_usable"]
     start, frame = start_screen_cycle(screen), screen.frame_cycles
     # From the cycle after each StartScreen on, the next scene.
     stimulus = [{**scene, "reset": 1}] * 2 + [{"reset": 0, "picture_run": 1, "rects_usable": 0}] * (start + 1 + frame)
     stimulus += [{"rects_usable": 1}] * frame + [{"picture_run": 0}] * (frame // 2)
     # The control's fetches are known from the first group on.
-    outputs = renderer_leaf(config, tmp_path).run_both(stimulus, settled=2 + start + 6)[2:]
+    outputs = renderer_leaf(config, tmp_path).run_both(plain(stimulus), settled=2 + start + 6)[2:]
 
     slopes = primary_slopes(screen).reshape(-1, 3)
     colours = model_of(config).trace(table, camera, background, slopes, config.reflections).colours
@@ -103,10 +90,7 @@ def test_ray_caster_renderer(config, tmp_path, random):
     shown = golden.copy()
     # Columns that were not written in time keep their half's old content, from the empty scene.
     shown[:, groups_in_time * config.units :] = empty[:, groups_in_time * config.units :]
-    frames = monitored(outputs, config)
-    assert len(frames) == 2
-    assert np.array_equal(frames[0], doubled(config, empty))
-    assert np.array_equal(frames[1], doubled(config, shown))
+    check_frames(outputs, config, [empty, shown])
     assert (groups_in_time < config.groups) == config.allow_underrun
 
     assert not any(output[f"vga_{channel}"] for output in outputs[start + 2 * frame + 1 :] for channel in "rgb")
@@ -139,14 +123,10 @@ LONG_LINE = replace(TINY_SCREEN, horizontal=Span(16, 8, 24, 60, active_high=Fals
 
 
 @pytest.mark.slow_sets("beam-tiny2-s2-u2", "seed")
-@pytest.mark.parametrize(
-    "config",
-    [
-        small_config(TINY_SCREEN, units=2, rectangles=1, reflections=1, divider_bits=1),
-        small_config(TINY_SCREEN, engine="beam", rectangles=1, reflections=1, scale=1),
-        small_config(LONG_LINE, engine="beam", rectangles=1, reflections=1, pixels=2),
-    ],
-    ids=config_id,
+@designs(
+    small_config(TINY_SCREEN, units=2, rectangles=1, reflections=1, divider_bits=1),
+    small_config(TINY_SCREEN, engine="beam", rectangles=1, reflections=1, scale=1),
+    small_config(LONG_LINE, engine="beam", rectangles=1, reflections=1, pixels=2),
 )
 def test_ray_caster_renderer_scenes(config, tmp_path, random):
     """One scene per frame, with one rectangle anywhere, and once disabled; both renderers."""
@@ -159,13 +139,7 @@ def test_ray_caster_renderer_scenes(config, tmp_path, random):
     stimulus = [{"reset": 1, "picture_run": 1}] * 2
     start = start_screen_cycle(screen)
     for number, (camera, table, background, reflections, _) in enumerate(scenes):
-        scene = {
-            "reset": 0,
-            "picture_background": colour_word(background),
-            "picture_reflections": reflections,
-            "rects_usable": usable_mask(table),
-            **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
-        }
+        scene = scene_inputs(camera, table, background, reflections) | {"reset": 0}
         if table.axes[0] >= 0:
             scene |= sorted_rect(table, 0, "rects_rect")
         # From the cycle after each StartScreen on, the next scene.
@@ -177,9 +151,7 @@ def test_ray_caster_renderer_scenes(config, tmp_path, random):
         stimulus += [{"picture_run": 1}] * (screen.doubling * screen.line_cycles + 2)
         stimulus += [{"reset": 1}] * 2 + [{"reset": 0}] * 3 * screen.line_cycles
     stimulus += [{"reset": 1}] * 2
-    outputs = renderer_leaf(config, tmp_path).run_both(stimulus, settled=2 + start + 6)[2:]
+    outputs = renderer_leaf(config, tmp_path).run_both(plain(stimulus), settled=2 + start + 6)[2:]
     assert not any(output["progress_busy"] for output in outputs[shown:])
-    frames = monitored(outputs[:shown], config)
-    assert len(frames) >= len(scenes)
-    for number, (frame, (_, table, _, _, words)) in enumerate(zip(frames, scenes, strict=False)):
-        assert np.array_equal(frame, doubled(config, words)), (number, table.corners.tolist())
+    # The last frame is black.
+    check_frames(outputs[:shown], config, [*(scene[-1] for scene in scenes), 0 * empty])

@@ -4,14 +4,12 @@
 import numpy as np
 from engine_vectors import (
     TINY_SCREEN,
-    doubled,
+    check_frames,
     golden_words,
-    monitored,
     scene_in_view,
     small_config,
     start_screen_cycle,
 )
-from vectors import ports
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.engines import model_of
@@ -23,7 +21,8 @@ from raycaster.rtl.system.ports import scene_system_ports
 from raycaster.rtl.system.reset_release import HOLD_CYCLES
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.rtl.system.scene_system import scene_system
-from raycaster.scene import Camera, Rectangle, Scene
+from raycaster.scene import Camera, Scene
+from raycaster.verif.random_scenes import rectangle_of
 
 
 def test_scene_system(tmp_path, random):
@@ -51,10 +50,7 @@ def test_scene_system(tmp_path, random):
         reflections=config.reflections,
         background=tuple(map(int, background)),
         camera=Camera(position=tuple(map(int, camera))),
-        rect=tuple(
-            Rectangle(corners=corners, colour="#{:02x}{:02x}{:02x}".format(*colour))
-            for corners, colour in zip(table.corners.tolist(), table.colours, strict=True)
-        ),
+        rect=tuple(rectangle_of(table, index) for index in range(len(table))),
     )
     stimulus = [{"ready": 0, "buttons": 0}] * ready
     for number, held in enumerate(holds):
@@ -62,11 +58,9 @@ def test_scene_system(tmp_path, random):
         until = start + start_screen_cycle(screen) + number * screen.frame_cycles + 2
         stimulus += [{"ready": 1, "buttons": int(held)}] * (until - len(stimulus))
     stimulus += [{"ready": 1, "buttons": 0}] * screen.frame_cycles
-    leaf = Leaf(scene_system, lambda: ports("", **scene_system_ports(config), config=config, scene=scene), tmp_path)
-    shown = monitored(leaf.run_both(stimulus, settled=ready)[start:], config)
-    assert len(shown) == frames
-    for number, (frame, picture) in enumerate(zip(shown, pictures, strict=True)):
-        assert np.array_equal(frame, doubled(config, golden_words(config, picture))), f"frame {number}"
+    leaf = Leaf(scene_system, lambda: scene_system_ports(config) | {"config": config, "scene": scene}, tmp_path)
+    outputs = leaf.run_both(stimulus, settled=ready)
+    check_frames(outputs[start:], config, [golden_words(config, picture) for picture in pictures])
 
 
 def walk(camera: np.ndarray, holds: np.ndarray) -> list[np.ndarray]:
