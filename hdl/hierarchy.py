@@ -25,7 +25,6 @@ from raycaster.hdl.given import GivenVerilog, load_words
 from raycaster.hdl.internals import (
     Block,
     Constant,
-    Memory,
     Process,
     ShadowSignal,
     SignalType,
@@ -73,7 +72,7 @@ REMEDIES = {
     "Signal is not driven": "drive it, or use tied()",
     "Signal is driven but not read": "remove it, or use unconnected() for an instance's output",
 }
-"""What to do about MyHDL's warnings, which are errors here."""
+"""Remedies for MyHDL's warnings, which are errors here."""
 
 Connection = SignalType | str | None
 """A signal, a number in Verilog notation, or nothing."""
@@ -100,7 +99,7 @@ def _instance(module: Module, name: str, connections: Mapping[str, Connection]) 
     return _Text(name, text, connections)
 
 
-def _loading(memory: Memory, file: str) -> _Text:
+def _loading(memory: Any, file: str) -> _Text:
     return _Text(
         memory.name,
         lambda: f'\n// Initial contents of the memory.\ninitial $readmemh("{file}", {memory.name});\n',
@@ -193,7 +192,7 @@ def convert_hierarchy(
             its module, or has the name of another block.
     """
     with elaboration(), faults_in_one_line():
-        return _Converter(directory, header, prefix, vocabulary or {}).convert(top)
+        return _Converter(directory, header, prefix, vocabulary or {}).modules_of(top)
 
 
 class _Converter:
@@ -202,7 +201,8 @@ class _Converter:
         self._kinds: dict[str, Any] = {}
         self._modules: dict[str, Module] = {}
 
-    def convert(self, top: Block) -> list[Module]:
+    def modules_of(self, top: Block) -> list[Module]:
+        """Return the modules of a block and of all in it."""
         self._module_of(top)
         return [*self._modules.values()]
 
@@ -345,8 +345,8 @@ def _kind(block: Block) -> tuple[Any, ...]:
 
 def _description(value: Any) -> Any:
     """Return what `_kind` compares for an argument."""
-    if isinstance(value, SignalType):
-        return _description_of_signal(value)
+    if isinstance(value, SignalType):  # MyHDL has no range for a single bit
+        return len(value) or 1, value.min or 0, value.max or 1 << (len(value) or 1)
     if isinstance(value, (list, tuple)):
         return tuple(map(_description, value))
     if getattr(value, "is_interface", False):
@@ -355,11 +355,6 @@ def _description(value: Any) -> Any:
     if isinstance(value, dict):
         return tuple((name, _description(element)) for name, element in value.items())
     return _Constant(value)
-
-
-def _description_of_signal(signal: SignalType) -> tuple[int, ...]:
-    """Return a signal's width and range; MyHDL has no range for a single bit."""
-    return len(signal) or 1, signal.min or 0, signal.max or 1 << (len(signal) or 1)
 
 
 def _check_names(block: Block, ports: Mapping[int, str], memories: list[Any]) -> None:

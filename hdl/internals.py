@@ -9,7 +9,6 @@ import importlib
 
 from myhdl._block import _Block as Block
 from myhdl._enum import EnumItemType
-from myhdl._extractHierarchy import _MemInfo as Memory
 from myhdl._extractHierarchy import _UserVerilogCode as UserVerilog
 from myhdl._instance import _Instantiator as Process
 from myhdl._ShadowSignal import _ShadowSignal as ShadowSignal
@@ -25,6 +24,6 @@ util, waiter = map(importlib.import_module, ("myhdl._util", "myhdl._Waiter"))
 """Modules in which `raycaster.hdl.elaboration` replaces functions."""
 
 __all__ = [
-    "Block", "Constant", "EnumItemType", "Memory", "Process", "ShadowSignal", "SignalType", "SignalWaiter",
+    "Block", "Constant", "EnumItemType", "Process", "ShadowSignal", "SignalType", "SignalWaiter",
     "SliceSignal", "UserVerilog", "VerilogConvertor", "all_signals", "util", "verilog_printer", "waiter",
 ]  # fmt: skip

@@ -166,8 +166,8 @@ class _Check(ast.NodeVisitor):
 
     def _judge_call(self, node: ast.Call, width: int, needed: int | None) -> None:
         function = _called(node)
-        if hasattr(node, "tree"):
-            check_process(node.tree, is_function=True)
+        if tree := getattr(node, "tree", None):
+            check_process(tree, is_function=True)
         elif function in (int, intbv):
             for argument in node.args[:1]:
                 self._judge(argument, width, needed)
@@ -223,9 +223,9 @@ class _Check(ast.NodeVisitor):
             case ast.Compare() | ast.BoolOp() | ast.UnaryOp():
                 known: Any = False
             case ast.Subscript(slice=ast.Slice() as bits) if not isinstance(node.value, ast.Call):
-                known = intbv(0)[self._bound(bits.lower, len(node.obj)) - self._bound(bits.upper, 0) :]
+                known = intbv(0)[self._bound(bits.lower, len(_known(node))) - self._bound(bits.upper, 0) :]
             case _:
-                known = getattr(node, "obj", None)
+                known = _known(node)
         return _range_of_type(known)
 
     def _bound(self, node: ast.expr | None, default: int) -> int:
@@ -256,13 +256,18 @@ class _Check(ast.NodeVisitor):
 def _has_bits(node: ast.expr) -> bool:
     """Return True if Verilog can take bits of what MyHDL prints for an expression."""
     if isinstance(node, ast.Call):
-        return isinstance(getattr(node, "obj", None), intbv) and _called(node) is not concat
+        return isinstance(_known(node), intbv) and _called(node) is not concat
     return isinstance(node, (ast.Name, ast.Attribute, ast.Subscript))
 
 
 def _called(node: ast.expr) -> Any:
     """Return the function that a call calls."""
-    return getattr(node.func, "obj", None) if isinstance(node, ast.Call) else None
+    return _known(node.func) if isinstance(node, ast.Call) else None
+
+
+def _known(node: ast.expr) -> Any:
+    """Return what MyHDL knows of an expression: its signal, or a value of its type."""
+    return getattr(node, "obj", None)
 
 
 def _either(one: _Range, other: _Range) -> _Range:
@@ -283,9 +288,8 @@ def _range_of_type(known: Any) -> _Range:
     """Return the range of what MyHDL knows of a name: a signal, or a value of the variable's type."""
     known = known.val if isinstance(known, SignalType) else known
     if isinstance(known, intbv) and len(known):
-        if known.min is None:
-            return _Range(0, (1 << len(known)) - 1, len(known), False)
-        return _Range(known.min, known.max - 1, len(known), known.min < 0)
+        low = known.min or 0
+        return _Range(low, (known.max or 1 << len(known)) - 1, len(known), low < 0)
     if isinstance(known, int) and not isinstance(known, bool):
         return _Range(0, LARGEST_VARIABLE, INTEGER_BITS, True)
     return _Range(0, int(isinstance(known, bool)), 1, False)

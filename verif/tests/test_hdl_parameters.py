@@ -3,50 +3,12 @@
 
 import numpy as np
 import pytest
-from hdl_blocks import Pair, converted, inverted, step
+from hdl_blocks import Pair, inverted, step
 from myhdl import always, always_comb, block
 
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.records import Interface, Record
 from raycaster.hdl.signals import bit, unconnected, unsigned
-
-
-@block
-def two_steps(clk, value, by, first, second, gains, widths):
-    steps = [
-        step(clk, value, by, out, unconnected(1), gain=gain)
-        for out, gain, _ in zip((first, second), gains, widths, strict=True)
-    ]
-
-    return (steps,)
-
-
-def two_steps_of(gains: tuple[int, int], widths: tuple[int, int]):
-    outputs = [unsigned(width) for width in widths]
-    return two_steps(bit(), unsigned(4), unsigned(4), *outputs, gains, widths)
-
-
-def test_one_name_is_one_module(tmp_path):
-    assert list(converted(two_steps_of((2, 2), (4, 4)), tmp_path)) == ["step", "two_steps"]
-
-
-@pytest.mark.parametrize(("gains", "widths"), [((1, 2), (4, 4)), ((1, 1), (4, 5))])
-def test_one_block_with_two_meanings_is_two_modules(gains, widths, tmp_path):
-    leaf = Leaf(
-        two_steps,
-        lambda: {
-            "clk": bit(), "value": unsigned(4), "by": unsigned(4), "first": unsigned(widths[0]),
-            "second": unsigned(widths[1]), "gains": gains, "widths": widths,
-        },
-        tmp_path,
-    )  # fmt: skip
-    assert [module.name for module in leaf.modules] == ["step", "step_1", "two_steps"]
-    assert leaf.modules[-1].instances == {"step_0": "step", "step_1": "step_1"}
-    outputs = leaf.run_both([{"value": 9, "by": 7}] * 4, settled=3)
-    assert outputs[-1] == {
-        name: (9 + 7 * gain % (1 << width)) % (1 << width)
-        for name, gain, width in zip(("first", "second"), gains, widths, strict=True)
-    }
 
 
 def another_step():
@@ -165,12 +127,13 @@ class Mode:
 
 @block
 def offset(clk, value, moved, mode):
-    """value + mode, modulo 16."""
-    step_by = mode.number if isinstance(mode, Mode) else int(mode[len(mode) // 2])
+    """value + mode, modulo the width of the result."""
+    step_by = mode.number if isinstance(mode, Mode) else mode if isinstance(mode, int) else int(mode[len(mode) // 2])
+    limit = 1 << len(moved)
 
     @always(clk.posedge)
     def work():
-        moved.next = (value + step_by) % 16
+        moved.next = (value + step_by) % limit
 
     return (work,)
 
@@ -184,28 +147,35 @@ def offsets(clk, value, first, second, modes):
     return one, two
 
 
-def offsets_of(*modes):
-    return lambda: {
-        "clk": bit(), "value": unsigned(4), "first": unsigned(4), "second": unsigned(4), "modes": modes,
-    }  # fmt: skip
+ONE = Mode(1)
+PEAK = np.eye(1, 3000, 1500)[0]
 
 
 @pytest.mark.parametrize(
-    ("modes", "moved"),
-    [((Mode(1), Mode(2)), [8, 9]), ((np.eye(1, 3000, 1500)[0], 2 * np.eye(1, 3000, 1500)[0]), [8, 9])],
-    ids=["object", "array"],
+    ("modes", "widths", "apart", "moved"),
+    [
+        pytest.param((1, 1), (4, 4), False, [0, 0], id="equal"),
+        pytest.param((1, 2), (4, 4), True, [0, 1], id="numbers"),
+        pytest.param((1, True), (4, 4), True, [0, 0], id="types"),
+        pytest.param((1, 1), (4, 5), True, [0, 16], id="widths"),
+        pytest.param((ONE, ONE), (4, 4), False, [0, 0], id="one-object"),
+        pytest.param((ONE, Mode(2)), (4, 4), True, [0, 1], id="objects-that-read-alike"),
+        pytest.param((PEAK, 2 * PEAK), (4, 4), True, [0, 1], id="arrays-that-read-alike"),
+    ],
 )
-def test_parameters_that_read_alike_are_two_modules(modes, moved, tmp_path):
-    leaf = Leaf(offsets, offsets_of(*modes), tmp_path)
-    assert [module.name for module in leaf.modules] == ["offset", "offset_1", "offsets"]
-    assert list(leaf.run_both([{"value": 7}] * 3, settled=2)[-1].values()) == moved
-
-
-def test_one_parameter_is_one_module(tmp_path):
-    mode = Mode(1)
-    assert len(Leaf(offsets, offsets_of(mode, mode), tmp_path).modules) == 2
-    assert len(Leaf(offsets, offsets_of((1, 2), (1, 2)), tmp_path).modules) == 2
-    assert len(Leaf(offsets, offsets_of((1, 2), (True, 2)), tmp_path).modules) == 3
+def test_parameters_and_widths_that_differ_make_modules_that_differ(modes, widths, apart, moved, tmp_path):
+    words = dict(zip(("first", "second"), widths, strict=True))
+    leaf = Leaf(
+        offsets,
+        lambda: {
+            "clk": bit(), "value": unsigned(4), **{name: unsigned(width) for name, width in words.items()},
+            "modes": modes,
+        },
+        tmp_path,
+    )  # fmt: skip
+    assert leaf.modules[-1].instances == {"offset_0": "offset", "offset_1": "offset_1" if apart else "offset"}
+    assert [module.name for module in leaf.modules] == ["offset", *["offset_1"] * apart, "offsets"]
+    assert list(leaf.run_both([{"value": 15}] * 3, settled=2)[-1].values()) == moved
 
 
 class Halves(Record):
