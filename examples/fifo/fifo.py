@@ -90,22 +90,17 @@ def fifo(clk, reset, source, sink, place_bits=2):
         place_bits: log2 of the number of places.
     """
     write_place, read_place, level = unsigned(place_bits), unsigned(place_bits), unsigned(place_bits + 1)
-    put, take, full, empty = bit(), bit(), bit(), bit()
+    put, take, places = bit(), bit(), 1 << place_bits
     writing = pointer(clk, reset, put, write_place)
     reading = pointer(clk, reset, take, read_place)
     memory = item_memory(clk, put, source.item, write_place, read_place, sink.item)
 
     @always_comb
-    def decide():
-        full.next = level == 1 << place_bits
-        empty.next = level == 0
-
-    @always_comb
     def offer():
-        source.ready.next = not full
-        sink.valid.next = not empty
-        put.next = source.valid and not full
-        take.next = sink.ready and not empty
+        source.ready.next = level != places
+        sink.valid.next = level != 0
+        put.next = source.valid and level != places
+        take.next = sink.ready and level != 0
 
     @always_seq(clk.posedge, reset=reset)
     def count():
@@ -114,13 +109,12 @@ def fifo(clk, reset, source, sink, place_bits=2):
         elif take and not put:
             level.next = level - 1
 
-    return writing, reading, memory, decide, offer, count
+    return writing, reading, memory, offer, count
 
 
 def ports(place_bits: int = 2) -> dict:
     """Return new arguments for `fifo`."""
-    signals = {"clk": bit(), "reset": reset_signal(), "source": Stream(), "sink": Stream()}
-    return signals | {"place_bits": place_bits}
+    return {"clk": bit(), "reset": reset_signal(), "source": Stream(), "sink": Stream(), "place_bits": place_bits}
 
 
 def convert(directory: Path) -> list[Path]:
