@@ -51,7 +51,7 @@ lint test: $(VENV)/base
 	@$(if $(filter lint,$@),$(PYTHON) -m ruff format --check)
 	@$(if $(filter lint,$@),$(PYTHON) -m pyright)
 	@$(if $(filter lint,$@),$(PYTHON) -m raycaster.verif.text_lint)
-	@$(if $(filter lint,$@),$(PYTHON) -m raycaster.hdl.lint rtl,$(PYTHON) -m raycaster.sim.ensure_tools icarus chromium tcl)
+	@$(if $(filter test,$@),$(PYTHON) -m raycaster.sim.ensure_tools icarus chromium tcl)
 	@$(if $(filter test,$@),$(PYTHON) -m pytest -q -n 2 --dist worksteal -m 'not slow' --durations=10 verif/tests)
 
 # Unknown targets.

@@ -7,8 +7,7 @@ import re
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-
-from myhdl._block import _Block
+from typing import Any
 
 from raycaster.configuration import Configuration, need_avalon
 from raycaster.convert.take_home import PREFIX, write_take_home
@@ -16,7 +15,7 @@ from raycaster.convert.vocabulary import VOCABULARY
 from raycaster.errors import UserError
 from raycaster.hdl.elaboration import elaborated, elaboration
 from raycaster.hdl.hierarchy import Module, convert_hierarchy
-from raycaster.hdl.inside import state_names
+from raycaster.hdl.internals import Block, EnumItemType
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.output import replaced
 from raycaster.rtl.dvi.dvi_encoder import dvi_encoder
@@ -96,8 +95,26 @@ def write_dvi_encoder(config: Configuration, directory: Path) -> list[Path]:
     return _write(config, directory, lambda: elaborated(dvi_encoder, **dvi_ports()))
 
 
+def state_names(top: Block) -> dict[tuple[str, str], dict[int, str]]:
+    """Find the enumerated signals of an elaborated design.
+
+    Returns:
+        By module and signal, the name of each value as encoded in Verilog.
+    """
+    found = {}
+    for name, signal in top.sigdict.items():
+        if isinstance(signal.val, EnumItemType):
+            value: Any = signal.val
+            states = value._type
+            found[top.func.__name__, name] = {int(getattr(states, item)._val, 2): item for item in states._names}
+    for sub in top.subs:
+        if isinstance(sub, Block):
+            found |= state_names(sub)
+    return found
+
+
 def design_states(config: Configuration) -> dict[tuple[str, str], dict[int, str]]:
-    """Return the enumerated signals of `ray_caster_module`; see `raycaster.hdl.inside.state_names`."""
+    """Return the enumerated signals of `ray_caster_module`; see `state_names`."""
     with elaboration():
         return state_names(elaborated(ray_caster_module, **module_ports(config), config=config))
 
@@ -105,7 +122,7 @@ def design_states(config: Configuration) -> dict[tuple[str, str], dict[int, str]
 def _write(
     config: Configuration,
     directory: Path,
-    elaborate: Callable[[], _Block],
+    elaborate: Callable[[], Block],
     complete: Callable[[list[Module], Path], None] | None = None,
     prefix: str = "",
 ) -> list[Path]:

@@ -11,11 +11,11 @@ from itertools import takewhile
 from typing import Any
 
 import pygraphviz
-from myhdl._block import _Block
 
 from raycaster.configuration import Configuration, configure
+from raycaster.docs.inside import Inside, Part, find_block, look_inside
 from raycaster.hdl.elaboration import elaborated, elaboration
-from raycaster.hdl.inside import Inside, Part, find_block, look_inside
+from raycaster.hdl.internals import Block
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.rtl.system.ports import module_ports, system_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
@@ -36,17 +36,17 @@ class Drawing:
     """A diagram of one block, in which some inner blocks are opened."""
 
     name: str
-    design: Callable[[Configuration], _Block]
+    design: Callable[[Configuration], Block]
     block: str
     opened: frozenset[str] = frozenset()
     engine: str = "seed"
 
 
-def _module(config: Configuration) -> _Block:
+def _module(config: Configuration) -> Block:
     return elaborated(ray_caster_module, **module_ports(config), config=config)
 
 
-def _system(config: Configuration) -> _Block:
+def _system(config: Configuration) -> Block:
     return elaborated(ray_caster_system, **system_ports(config), config=config, program=PROGRAM_FILE)
 
 
@@ -120,7 +120,7 @@ def _in_common(sequences: Iterable[Sequence[str]]) -> tuple[str, ...]:
 
 
 @cache
-def _elaborate(design: Callable[[Configuration], _Block], engine: str) -> _Block:
+def _elaborate(design: Callable[[Configuration], Block], engine: str) -> Block:
     """Elaborate the default design of an engine once for all drawings."""
     with elaboration():
         return design(configure(engine=engine))

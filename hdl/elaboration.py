@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import importlib
 import inspect
 import sys
 import threading
@@ -13,8 +12,7 @@ from functools import cache
 from types import CodeType
 from typing import Any
 
-from myhdl._block import _Block
-from myhdl._simulator import _signals
+from raycaster.hdl.internals import Block, all_signals, util, waiter
 
 _ELABORATING = threading.RLock()
 """Lock for a single design at a time, as MyHDL elaborates, simulates and converts through globals."""
@@ -47,14 +45,14 @@ def elaboration() -> Iterator[None]:
 @contextmanager
 def forgetting() -> Iterator[None]:
     """Make a context whose signals MyHDL forgets afterwards."""
-    known = len(_signals)
+    known = len(all_signals)
     try:
         yield
     finally:
-        del _signals[known:]
+        del all_signals[known:]
 
 
-def elaborated(block: Any, **arguments: Any) -> _Block:
+def elaborated(block: Any, **arguments: Any) -> Block:
     """Elaborate a block; this gives the result a type, which MyHDL's function does not have."""
     return block(**arguments)
 
@@ -91,13 +89,12 @@ def _once(function: Any) -> Any:
     return quick
 
 
-_UTIL, _WAITER = map(importlib.import_module, ("myhdl._util", "myhdl._Waiter"))
 _REPLACED = (
     (inspect, "stack", _callers),
     (inspect, "getouterframes", _callers),
     (inspect, "getsourcelines", _once(inspect.getsourcelines)),
     (inspect, "getsourcefile", _once(inspect.getsourcefile)),
-    (_UTIL, "_dedent", _dedent := cache(_UTIL._dedent)),
-    (_WAITER, "_dedent", _dedent),
+    (util, "_dedent", _dedent := cache(util._dedent)),
+    (waiter, "_dedent", _dedent),
 )
 """Functions that MyHDL calls, and their replacements."""

@@ -6,6 +6,8 @@ from __future__ import annotations
 import ast
 import re
 import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 
@@ -39,3 +41,16 @@ def fault_in_block(error: BaseException, converters: tuple[str, ...] = ()) -> st
         if not module.startswith(("myhdl.", "raycaster.hdl.", *converters)):
             return f"{frame.f_code.co_filename}:{line}: {reason}"
     return None
+
+
+@contextmanager
+def faults_in_one_line() -> Iterator[None]:
+    """Make a context in which a fault in a MyHDL block becomes a `UserError` with file, line and reason."""
+    try:
+        yield
+    except UserError:
+        raise
+    except Exception as error:
+        if fault := fault_in_block(error):
+            raise UserError(fault) from None
+        raise

@@ -12,10 +12,9 @@ from typing import Any, ClassVar
 from myhdl import Simulation, StopSimulation, block, delay, instance
 
 from raycaster.hdl.elaboration import elaboration
-from raycaster.hdl.errors import UserError, fault_in_block
+from raycaster.hdl.errors import faults_in_one_line
 from raycaster.hdl.hierarchy import Module, Port, convert_hierarchy
-from raycaster.hdl.inside import port_signals
-from raycaster.hdl.records import Record
+from raycaster.hdl.records import Record, port_signals
 
 Cycle = Mapping[str, int]
 
@@ -47,14 +46,8 @@ class Leaf:
 
     def __init__(self, function: Callable, arguments: Callable[[], dict[str, Any]], directory: Path):
         self._function, self._arguments, self._directory = function, arguments, directory
-        try:
-            with elaboration():
-                top = function(**arguments())
-            self.modules: list[Module] = convert_hierarchy(top, directory, "// {module}")
-        except Exception as error:
-            if fault := fault_in_block(error):
-                raise UserError(fault) from None
-            raise
+        with elaboration(), faults_in_one_line():
+            self.modules: list[Module] = convert_hierarchy(function(**arguments()), directory, "// {module}")
         self.verilog: Sequence[Path] = [module.path for module in self.modules]
         """Files that `run_verilog` simulates; another form of the same block, such as its netlist, may replace them."""
         ports = self.modules[-1].ports

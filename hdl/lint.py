@@ -1,298 +1,295 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.hdl.lint`: find hardware sources that MyHDL converts wrongly, or not at all.
+"""Check of each process that is converted: Verilog must compute what MyHDL computes.
 
-MyHDL computes with integers of any size, Verilog with the width of the widest operand. So where a result is compared,
-shifted, sliced or added to again, MyHDL keeps a carry that Verilog loses; no tool warns. In this project each process
-computes one operator at a time, into a signal of declared width. Expressions that are numbers at conversion (literals,
-constants, loop variables, and anything computed from these alone) are exempt.
-
-Rules, for functions that are decorated with always, always_comb, always_seq or instance, or passed to them:
-  arithmetic  the result of an operator on signals is not simply assigned; (a + b) % (1 << n) may be assigned
-  call        the called function does not exist in Verilog
-  slice       bits are taken from an expression that is not a signal
-  return      converts to disable, which synthesis refuses
-  docstring   breaks the conversion on newer Pythons
-  process     a process is not a function of the same file, so that this lint does not see it
+MyHDL computes with integers of any size. Verilog computes an expression with the bits of its widest operand or of its
+target, so where a result is compared, shifted to the right, divided or used as an index, it may have lost a carry or a
+sign. No other tool warns of it. The check knows the range of every signal, and refuses a result that may not fit.
+Operators whose lowest bits do not depend on a carry may be nested: `total.next = a + b + c` is right for any widths.
 """
 
 from __future__ import annotations
 
-import argparse
 import ast
-import sys
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from itertools import repeat
-from pathlib import Path
+import operator
+from typing import Any, NamedTuple
+
+from myhdl import concat, intbv
 
 from raycaster.hdl.errors import UserError
+from raycaster.hdl.internals import SignalType
 
-DECORATORS = {"always", "always_comb", "always_seq", "instance"}
-ALLOWED_CALLS = {"intbv", "modbv", "concat", "int", "len", "range", "bool"}
-SIGNAL_MAKERS = {"Signal", "ResetSignal", "ConcatSignal", "unsigned", "signed", "bit", "tied", "unconnected"}
-ARITHMETIC = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.FloorDiv, ast.Mod, ast.Pow, ast.LShift, ast.RShift)
+INTEGER_BITS = 32
+"""Bits of a number, or of an integer variable, in Verilog."""
+
+LARGEST_VARIABLE = 1 << 20
+"""Assumed end of the range of an integer variable, such as a loop's."""
+
+EXACT = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.LShift: lambda value, places: value << min(max(places, 0), 1 << 10),
+}
+"""Operators whose range follows from the ends of their operands' ranges."""
+
+CARRYING = (*EXACT, ast.BitAnd, ast.BitOr, ast.BitXor)
+"""Operators whose lowest bits depend on the lowest bits of their operands only."""
 
 
-@dataclass(frozen=True, order=True)
-class Finding:
-    """A place that breaks a rule, and how to fix it."""
+class _Range(NamedTuple):
+    """Values of an expression in MyHDL, and its bits in Verilog if nothing around it is wider."""
 
-    path: Path
-    line: int
-    rule: str
-    advice: str
-
-    def __str__(self) -> str:
-        return f"{self.path}:{self.line}: {self.rule}: {self.advice}"
+    low: int
+    high: int
+    bits: int
+    signed: bool
+    """True if Verilog takes it as two's complement."""
 
 
-def check(path: Path) -> list[Finding]:
-    """Return all findings in a source file, by line.
+def check_process(tree: Any, *, is_function: bool = False) -> None:
+    """Check a process that MyHDL has analysed, and the functions that it calls.
 
     Raises:
-        UserError: the file cannot be read or is not Python.
+        UserError: Verilog would compute something else, or has no such function; the text begins with file and line.
     """
-    try:
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, SyntaxError) as error:
-        raise UserError(f"{path}: {error}") from None
-    functions = {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
-    findings = {
-        Finding(path, given.lineno, "process", "name a function of this file")
-        for given in _given_to_makers(tree)
-        if not (isinstance(given, ast.Name) and given.id in functions)
-    }
-    _visit(processes(tree), tree.body, _module_constants(tree), path, findings)
-    return sorted(findings)
+    _Check(tree, is_function).visit(tree)
 
 
-Known = dict[str, bool]
-"""Names: True for constants when the design is converted, False for signals."""
+class _Check(ast.NodeVisitor):
+    def __init__(self, tree: Any, is_function: bool):
+        self._tree, self._is_function = tree, is_function
 
+    def _refuse(self, node: Any, reason: str) -> None:
+        raise UserError(f"{self._tree.sourcefile}:{self._tree.lineoffset + node.lineno}: {reason}")
 
-def processes(tree: ast.Module) -> list[ast.FunctionDef]:
-    """Return the functions that become processes, decorated by MyHDL or passed to one of its decorators."""
-    given = {node.id for node in _given_to_makers(tree) if isinstance(node, ast.Name)}
-    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
-    return [one for one in functions if one.name in given or any(_name(d) in DECORATORS for d in one.decorator_list)]
-
-
-def _given_to_makers(tree: ast.Module) -> Iterator[ast.expr]:
-    """Yield what becomes a process: always_comb(this), instance(this), always(...)(this), always_seq(...)(this)."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Call):
-            maker = node.func.func if isinstance(node.func, ast.Call) else node.func
-            with_sensitivity = isinstance(node.func, ast.Call)
-            if _name(maker) in DECORATORS and with_sensitivity == (_name(maker) in ("always", "always_seq")):
-                yield from [*node.args, *(keyword.value for keyword in node.keywords)]
-
-
-def _visit(
-    made: Sequence[ast.FunctionDef], body: Sequence[ast.stmt], known: Known, path: Path, findings: set[Finding]
-) -> None:
-    """Check the processes; names become known on the way down to them."""
-    known = dict(known)
-    for statement in body:
-        if isinstance(statement, ast.FunctionDef):
-            if statement in made:
-                findings.update(_Process(known, path).check(statement))
-            else:
-                _visit(made, statement.body, known | _parameters(statement), path, findings)
+    def visit(self, node: ast.AST) -> None:
+        """Check a statement; its expressions stand alone, as conditions do."""
+        if isinstance(node, ast.expr):
+            self._alone(node)
         else:
-            _learn(statement, known)
-            for inner in ("body", "orelse", "finalbody"):
-                _visit(made, getattr(statement, inner, []), known, path, findings)
+            super().visit(node)
 
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
+        """Check the body only."""
+        for statement in node.body:
+            self.visit(statement)
 
-def _module_constants(tree: ast.Module) -> Known:
-    """Return all names in capitals, which are constants by convention."""
-    return {node.id: True for node in ast.walk(tree) if isinstance(node, ast.Name) and node.id.isupper()}
+    def visit_Expr(self, node: ast.Expr) -> None:
+        """Check a task's arguments; what a process waits for, and a text, compute nothing."""
+        if isinstance(node.value, ast.Call) and _called(node.value) is not print:
+            self._alone(node.value)
 
+    def visit_Return(self, node: ast.Return) -> None:
+        """Refuse an early end of a process, which synthesis does."""
+        if not self._is_function:
+            self._refuse(node, "synthesis refuses return in a process; write if and else around what it skips")
+        if node.value:
+            self._computed(node.value, len(self._tree.returnObj or ()) or INTEGER_BITS)
 
-def _parameters(function: ast.FunctionDef) -> Known:
-    """Return a block's arguments; those with a type or a default are constants, not ports."""
-    arguments = [*function.args.posonlyargs, *function.args.args]
-    defaults = len(function.args.defaults)
-    parameters = {argument.arg: argument.annotation is not None for argument in arguments}
-    parameters |= {argument.arg: True for argument in arguments[len(arguments) - defaults :]}
-    return parameters | {argument.arg: True for argument in function.args.kwonlyargs}
+    def visit_Assign(self, node: ast.Assign) -> None:
+        """Check the right side with the bits of the left side."""
+        [target] = node.targets
+        while isinstance(target, ast.Attribute):
+            target = target.value
+        self._alone(target)
+        self._computed(node.value, self._range(target).bits)
 
+    def visit_AugAssign(self, node: ast.AugAssign) -> None:
+        """Check it as the assignment of a result."""
+        result = ast.copy_location(ast.BinOp(node.target, node.op, node.value), node)
+        self._computed(result, self._range(node.target).bits)
 
-def _learn(statement: ast.stmt, known: Known) -> None:
-    """Add the names that a statement assigns."""
-    if not isinstance(statement, ast.Assign):
-        return
-    for target in statement.targets:
-        if isinstance(target, ast.Tuple) and isinstance(statement.value, ast.Tuple):
-            pairs = zip(target.elts, statement.value.elts, strict=True)
-        elif isinstance(target, ast.Tuple):
-            pairs = zip(target.elts, repeat(statement.value))
-        else:
-            pairs = [(target, statement.value)]
-        constant = {name.id: _constant(value, known) for name, value in pairs if isinstance(name, ast.Name)}
-        known.update(constant)
+    def visit_For(self, node: ast.For) -> None:
+        """Check the body; the range of a loop is constant."""
+        for statement in node.body:
+            self.visit(statement)
 
+    def _alone(self, node: ast.expr) -> None:
+        self._judge(node, self._range(node).bits, None)
 
-def _constant(node: ast.AST, known: Known) -> bool:
-    """True if an expression is a number, or anything else than a signal, when the design is converted."""
-    match node:
-        case ast.Name():
-            return known.get(node.id, False)
-        case ast.Call():
-            return _constant_call(node, known)
-        case ast.GeneratorExp() | ast.ListComp():
-            inner = dict(known)
-            for generator in node.generators:
-                constant = _constant(generator.iter, inner)
-                inner |= {name.id: constant for name in ast.walk(generator.target) if isinstance(name, ast.Name)}
-            return _constant(node.elt, inner)
-        case _:
-            parts = (part for part in ast.iter_child_nodes(node) if isinstance(part, ast.expr))
-            return all(_constant(part, known) for part in parts)
+    def _computed(self, node: ast.expr, target: int) -> None:
+        self._judge(node, max(target, self._range(node).bits), target)
 
+    def _judge(self, node: ast.expr, width: int, needed: int | None) -> None:
+        """Check an expression that Verilog computes with `width` bits.
 
-def _constant_call(node: ast.Call, known: Known) -> bool:
-    """True for a function of constants, unless it makes signals: classes, some functions, and slicing calls."""
-    name = _name(node.func)
-    if name == "len":
-        return True
-    parts = [*node.args, *(keyword.value for keyword in node.keywords)]
-    if isinstance(node.func, ast.Name):
-        makes_signal = name in SIGNAL_MAKERS or name[:1].isupper() or name in known
-    else:
-        makes_signal = isinstance(node.func, ast.Subscript)
-        parts.append(node.func)
-    return not makes_signal and all(_constant(part, known) for part in parts)
-
-
-def _name(node: ast.expr) -> str:
-    """Return the last part of a name, or of the name that is called."""
-    match node:
-        case ast.Call():
-            return _name(node.func)
-        case ast.Attribute():
-            return node.attr
-        case ast.Name():
-            return node.id
-    return ""
-
-
-class _Process:
-    """Checker of a function that becomes a process."""
-
-    def __init__(self, known: Known, path: Path):
-        self._known, self._path = dict(known), path
-
-    def check(self, function: ast.FunctionDef) -> Iterator[Finding]:
-        if ast.get_docstring(function) is not None:
-            yield self._finding(function.body[0], "docstring", "make it a comment above the decorator")
-        for node in ast.walk(function):
-            if isinstance(node, ast.For):
-                self._known |= {name.id: True for name in ast.walk(node.target) if isinstance(name, ast.Name)}
-        for statement in function.body:
-            yield from self._statement(statement)
-
-    def _statement(self, node: ast.AST) -> Iterator[Finding]:
-        if isinstance(node, ast.Return):
-            yield self._finding(node, "return", "write if and else around what it skips")
-        elif isinstance(node, (ast.FunctionDef, ast.Lambda)):
-            yield self._finding(node, "call", "write the helper's statements where it is called")
-        elif isinstance(node, ast.AugAssign) and self._on_signals(node.target, node.value):
-            yield from self._expression(node.value)
-        elif isinstance(node, (ast.Assign, ast.AnnAssign)) and node.value is not None:
-            for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
-                yield from self._expression(target)
-            yield from self._assigned(node.value)
-        else:
-            for child in ast.iter_child_nodes(node):
-                if isinstance(child, ast.expr):
-                    yield from self._expression(child)
-                else:
-                    yield from self._statement(child)
-
-    def _assigned(self, node: ast.expr) -> Iterator[Finding]:
-        """Check a whole right side, which may have one operator and a wrap of its result to the target's width."""
-        if isinstance(node, ast.BinOp) and self._wraps(node):
-            node = node.left
-        if isinstance(node, ast.BinOp) and self._operates(node):
-            yield from self._expression(node.left)
-            yield from self._expression(node.right)
-        elif isinstance(node, ast.UnaryOp) and self._operates(node):
-            yield from self._expression(node.operand)
-        else:
-            yield from self._expression(node)
-
-    def _expression(self, node: ast.AST) -> Iterator[Finding]:
-        """Check any other place, which must have no operator on signals."""
-        if isinstance(node, ast.expr) and _constant(node, self._known):
-            return
-        if isinstance(node, (ast.Lambda, ast.ListComp, ast.GeneratorExp)):
-            yield self._finding(node, "call", "write a for loop")
-            return
-        if isinstance(node, ast.expr) and self._operates(node):
-            yield self._finding(
-                node, "arithmetic", "assign only this operation to a signal of declared width, and use that signal"
-            )
-        if isinstance(node, ast.Call):
-            yield from self._call(node)
-        if isinstance(node, ast.Subscript) and not isinstance(node.value, (ast.Name, ast.Attribute, ast.Subscript)):
-            yield self._finding(node, "slice", "assign the expression to a signal, and take bits of that signal")
-        for child in ast.iter_child_nodes(node):
-            yield from self._expression(child)
-
-    def _call(self, node: ast.Call) -> Iterator[Finding]:
-        name = _name(node.func)
-        if name in ("max", "min", "abs"):
-            yield self._finding(node, "call", f"Verilog has no {name}; write if and else")
-        elif isinstance(node.func, ast.Attribute) and name == "signed":
-            return
-        elif name not in ALLOWED_CALLS:
-            allowed = ", ".join(sorted(ALLOWED_CALLS))
-            yield self._finding(node, "call", f"only {allowed} convert; write {name or 'it'} out, or call it outside")
-
-    def _operates(self, node: ast.AST) -> bool:
+        Args:
+            node: the expression.
+            width: bits with which Verilog computes it.
+            needed: the number of its lowest bits that are used, None for all.
+        """
         match node:
-            case ast.BinOp(op=op) if isinstance(op, ARITHMETIC):
-                return self._on_signals(node.left, node.right)
+            case ast.BinOp(op=ast.LShift() | ast.RShift() as op):
+                self._fits(node, width, needed)
+                self._judge(node.left, width, needed if isinstance(op, ast.LShift) else None)
+                self._alone(node.right)
+            case ast.BinOp(op=ast.Mod()):
+                self._judge(node.left, width, self._wrapped(node, needed))
+                self._judge(node.right, width, None)
+            case ast.BinOp():
+                inner = needed if isinstance(node.op, CARRYING) else None
+                self._fits(node, width, needed)
+                self._judge(node.left, width, inner)
+                self._judge(node.right, width, inner)
+            case ast.UnaryOp(op=ast.Invert()):
+                own = self._range(node.operand)
+                if own.bits < (width if needed is None else needed) and not own.signed:
+                    self._refuse(
+                        node, f"~ also sets the bits above these {own.bits}; assign it to a signal of {own.bits} bits"
+                    )
+                self._judge(node.operand, width, needed)
+            case ast.UnaryOp(op=ast.Not()):
+                self._alone(node.operand)
+            case ast.UnaryOp():
+                self._fits(node, width, needed)
+                self._judge(node.operand, width, needed)
+            case ast.Compare():
+                sides = [node.left, *node.comparators]
+                widest = max(self._range(side).bits for side in sides)
+                for side in sides:
+                    self._judge(side, widest, None)
+            case ast.IfExp():
+                self._alone(node.test)
+                self._judge(node.body, width, needed)
+                self._judge(node.orelse, width, needed)
+            case ast.Call():
+                self._judge_call(node, width, needed)
+            case ast.Subscript():
+                if not _has_bits(node.value):
+                    self._refuse(node, "Verilog has no bits of an expression; assign it to a signal, and take its bits")
+                if not isinstance(node.slice, ast.Slice):
+                    self._alone(node.slice)
+            case _:
+                for part in ast.iter_child_nodes(node):
+                    if isinstance(part, ast.expr):
+                        self._alone(part)
+
+    def _judge_call(self, node: ast.Call, width: int, needed: int | None) -> None:
+        function = _called(node)
+        if tree := getattr(node, "tree", None):
+            check_process(tree, is_function=True)
+        elif function in (int, intbv):
+            for argument in node.args[:1]:
+                self._judge(argument, width, needed)
+            return
+        elif getattr(function, "__module__", "") == "builtins" and function not in (len, bool, ord, range, print):
+            name = getattr(function, "__name__", "")
+            self._refuse(node, f"Verilog has no {name}; write if and else" if name in ("max", "min", "abs") else
+                         f"Verilog has no {name}; write it out, or call it outside the process")  # fmt: skip
+        for argument in node.args:
+            self._alone(argument)
+
+    def _wrapped(self, node: ast.BinOp, needed: int | None) -> int | None:
+        """Return the bits of a dividend that are used: few, if the divisor is a power of two."""
+        divisor, dividend = self._range(node.right), self._range(node.left)
+        power = divisor.high.bit_length() - 1
+        if divisor.low != divisor.high or divisor.high != 1 << power:
+            return None
+        return power if dividend.low >= 0 or (needed is not None and needed <= power) else None
+
+    def _fits(self, node: ast.expr, width: int, needed: int | None) -> None:
+        """Refuse a result of which bits are lost that are needed, or a sign that Verilog does not know."""
+        if needed is not None and needed <= width:
+            return
+        own = self._range(node)
+        bits = max(own.low.bit_length(), own.high.bit_length()) + (own.low < 0)
+        if own.low < 0 and not own.signed:
+            self._refuse(node, f"the result may be below 0, and loses its sign; assign it to signed({bits})")
+        if bits > width:
+            self._refuse(node, f"the result has {bits} bits, and loses some; assign it to a signal of {bits} bits")
+
+    def _range(self, node: ast.expr) -> _Range:
+        """Return the range of an expression."""
+        match node:
+            case ast.BinOp():
+                return self._range_of_operator(node)
             case ast.UnaryOp(op=ast.USub()):
-                return self._on_signals(node.operand)
-        return False
+                own = self._range(node.operand)
+                return _Range(-own.high, -own.low, own.bits, own.signed)
+            case ast.UnaryOp(op=ast.Invert()):
+                own = self._range(node.operand)
+                return own if own.low < 0 else own._replace(high=(1 << own.bits) - 1)
+            case ast.IfExp():
+                return _either(self._range(node.body), self._range(node.orelse))
+            case ast.Call(args=[value]) if _called(node) in (int, intbv):
+                return self._range(value)
+        return self._range_of_leaf(node)
 
-    def _wraps(self, node: ast.expr) -> bool:
-        """True for `(...) % (1 << n)`: the literal makes Verilog compute in 32 bits, and these are right."""
+    def _range_of_leaf(self, node: ast.expr) -> _Range:
+        """Return the range of an expression that has no operator of arithmetic."""
         match node:
-            case ast.BinOp(op=ast.Mod(), right=ast.BinOp(left=ast.Constant(value=1), op=ast.LShift(), right=width)):
-                return _constant(width, self._known)
-        return False
+            case ast.Constant(value=number) | ast.Name(obj=int(number), value=_):
+                return _range_of_number(number)
+            case ast.Compare() | ast.BoolOp() | ast.UnaryOp():
+                known: Any = False
+            case ast.Subscript(slice=ast.Slice() as bits) if not isinstance(node.value, ast.Call):
+                known = intbv(0)[self._bound(bits.lower, len(_known(node))) - self._bound(bits.upper, 0) :]
+            case _:
+                known = _known(node)
+        return _range_of_type(known)
 
-    def _on_signals(self, *operands: ast.expr) -> bool:
-        return not all(_constant(operand, self._known) for operand in operands)
+    def _bound(self, node: ast.expr | None, default: int) -> int:
+        """Return a bound of a slice; one that a loop changes counts as the default."""
+        try:
+            return int(eval(compile(ast.Expression(node), "", "eval"), self._tree.symdict)) if node else default
+        except (NameError, TypeError):
+            return default
 
-    def _finding(self, node: ast.stmt | ast.expr, rule: str, advice: str) -> Finding:
-        return Finding(self._path, node.lineno, rule, advice)
+    def _range_of_operator(self, node: ast.BinOp) -> _Range:
+        one, other = self._range(node.left), self._range(node.right)
+        around = _either(one, other)
+        if isinstance(node.op, (ast.LShift, ast.RShift)):
+            around = around._replace(bits=one.bits, signed=one.signed)
+        if compute := EXACT.get(type(node.op)):
+            values = [compute(a, b) for a in (one.low, one.high) for b in (other.low, other.high)]
+        elif isinstance(node.op, ast.Mod):
+            values = [0, max(other.high - 1, 0)]
+        elif isinstance(node.op, ast.BitAnd) and max(one.low, other.low) >= 0:
+            values = [0, min(part.high for part in (one, other) if part.low >= 0)]
+        elif isinstance(node.op, (ast.BitOr, ast.BitXor)) and around.low >= 0:
+            values = [0, (1 << around.high.bit_length()) - 1]
+        else:  # no larger than the operands
+            values = [around.low, around.high]
+        return around._replace(low=min(values), high=max(values))
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command and return its exit code."""
-    parser = argparse.ArgumentParser(
-        prog="python -m raycaster.hdl.lint",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+def _has_bits(node: ast.expr) -> bool:
+    """Return True if Verilog can take bits of what MyHDL prints for an expression."""
+    if isinstance(node, ast.Call):
+        return isinstance(_known(node), intbv) and _called(node) is not concat
+    return isinstance(node, (ast.Name, ast.Attribute, ast.Subscript))
+
+
+def _called(node: ast.expr) -> Any:
+    """Return the function that a call calls."""
+    return _known(node.func) if isinstance(node, ast.Call) else None
+
+
+def _known(node: ast.expr) -> Any:
+    """Return what MyHDL knows of an expression: its signal, or a value of its type."""
+    return getattr(node, "obj", None)
+
+
+def _either(one: _Range, other: _Range) -> _Range:
+    """Return a range that contains two others."""
+    return _Range(
+        min(one.low, other.low), max(one.high, other.high), max(one.bits, other.bits), one.signed and other.signed
     )
-    parser.add_argument("paths", nargs="+", type=Path, metavar="PATH", help="files and directories")
-    arguments = parser.parse_args(argv)
-    files: list[Path] = []
-    for path in arguments.paths:
-        files += sorted(path.rglob("*.py")) if path.is_dir() else [path]
-    findings = [finding for path in files for finding in check(path)]
-    for finding in findings:
-        print(finding)
-    print(f"{len(files)} files, {len(findings)} findings", file=sys.stderr)
-    return int(bool(findings))
 
 
-if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except UserError as error:
-        sys.exit(f"error: {error}")
+def _range_of_number(value: Any) -> _Range:
+    """Return the range of a number, True or False; of anything else, nothing is computed."""
+    if isinstance(value, bool) or not isinstance(value, int):
+        return _Range(int(value is True), int(value is True), 1, False)
+    return _Range(value, value, max(INTEGER_BITS, value.bit_length() + 1), True)
+
+
+def _range_of_type(known: Any) -> _Range:
+    """Return the range of what MyHDL knows of a name: a signal, or a value of the variable's type."""
+    known = known.val if isinstance(known, SignalType) else known
+    if isinstance(known, intbv) and len(known):
+        low = known.min or 0
+        return _Range(low, (known.max or 1 << len(known)) - 1, len(known), low < 0)
+    if isinstance(known, int) and not isinstance(known, bool):
+        return _Range(0, LARGEST_VARIABLE, INTEGER_BITS, True)
+    return _Range(0, int(isinstance(known, bool)), 1, False)

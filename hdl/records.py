@@ -4,14 +4,13 @@
 Interfaces: groups of ports, of which each is a signal of its own.
 """
 
-from collections.abc import Mapping
+import inspect
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Self
 
 from myhdl import ConcatSignal
-from myhdl._ShadowSignal import _ShadowSignal, _SliceSignal
-from myhdl._Signal import _Signal
-from myhdl._Waiter import _SignalWaiter
 
+from raycaster.hdl.internals import Block, ShadowSignal, SignalType, SignalWaiter, SliceSignal
 from raycaster.hdl.signals import Signed, Tied, Unconnected, initial, tied, unsigned
 
 
@@ -21,7 +20,7 @@ class Interface:
     is_interface = True
 
 
-class Part(_SliceSignal):
+class Part(SliceSignal):
     """Bits of a port's word, which may itself be a part, or several words side by side."""
 
     def _setName(self, hdl):
@@ -33,21 +32,21 @@ class Part(_SliceSignal):
 class Field(Part):
     """A record's field: read-only bits of its word. In Verilog it is a wire in the module that reads it."""
 
-    def __init__(self, word: _Signal, name: str, low: int, width: int):
+    def __init__(self, word: SignalType, name: str, low: int, width: int):
         """Create the field from bits of a word; a `Signed` width means two's complement."""
         bits = word.val[low + width : low]
         value = int(bits.signed()) if isinstance(width, Signed) else int(bits)
-        _ShadowSignal.__init__(self, initial(value, width))
+        ShadowSignal.__init__(self, initial(value, width))
         self.field = name
         self._sig, self._left, self._right = word, low + width, low
         if width == 1:
             self._left, self._right = low, None
         word._slicesigs.append(self)
-        self._waiter = _SignalWaiter(self._genfuncIndex() if width == 1 else self._genfuncSlice())
+        self._waiter = SignalWaiter(self._genfuncIndex() if width == 1 else self._genfuncSlice())
 
     def _genfuncSlice(self):
         """Follow the word as MyHDL does, but keep the sign of a signed field."""
-        set_next: Any = _Signal.next.fset
+        set_next: Any = SignalType.next.fset
         while True:
             bits = self._sig[self._left : self._right]
             set_next(self, bits.signed() if self.min < 0 else bits)
@@ -57,7 +56,7 @@ class Field(Part):
 class Joined(ConcatSignal):
     """A record's word, joined from its fields' values; see `Record.joined`. In Verilog a comment names each field."""
 
-    def __init__(self, parts: Mapping[str, _Signal | bool]):
+    def __init__(self, parts: Mapping[str, SignalType | bool]):
         super().__init__(*parts.values())
         self.parts = dict(parts)
 
@@ -66,7 +65,7 @@ class Joined(ConcatSignal):
         self._read = True
         for part in self._sigargs:
             read = part
-            while isinstance(read, _SliceSignal):
+            while isinstance(read, SliceSignal):
                 read._markRead()
                 read = read._sig
             read._markRead()
@@ -86,7 +85,7 @@ def _text(part: Any) -> str:
     """Return a field's value in Verilog."""
     if isinstance(part, ConcatSignal):
         return f"{{{', '.join(map(_text, part._args))}}}"
-    if isinstance(part, _SliceSignal) and isinstance(part._sig, Field) and not isinstance(part, Field):
+    if isinstance(part, SliceSignal) and isinstance(part._sig, Field) and not isinstance(part, Field):
         return f"{part._sig._name}[{part._left}-1:{part._right}]"
     return f"1'b{int(part)}" if isinstance(part, bool) else part._name
 
@@ -102,7 +101,7 @@ class Record:
 
     is_interface = True
 
-    def __init__(self, fields: Mapping[str, int], word: _Signal | None = None):
+    def __init__(self, fields: Mapping[str, int], word: SignalType | None = None):
         """Lay out fields.
 
         Args:
@@ -136,7 +135,7 @@ class Record:
         """Return True if a field has bits; otherwise the logic that computes it is left out."""
         return name in self.layout
 
-    def joined(self, **parts: _Signal | bool) -> Joined:
+    def joined(self, **parts: SignalType | bool) -> Joined:
         """Return the fields side by side, to assign to a record's word.
 
         Args:
@@ -171,7 +170,7 @@ class Record:
         low = sum(self.layout[after] for after in names[names.index(name) + 1 :])
         return low + self.layout[name] - 1, low
 
-    def cut(self, words: _Signal, index: int) -> Self:
+    def cut(self, words: SignalType, index: int) -> Self:
         """Make the record one of several packed side by side in words, the first in the lowest bits, and return it."""
         width = len(self.word)
         part = Part(words, (index + 1) * width, index * width)
@@ -183,3 +182,34 @@ class Record:
         """Tie the record to these constant values, and return it."""
         Record.__init__(self, self._fields(), Tied(initial(self.pack(values), self.word)))
         return self
+
+
+def port_signals(arguments: Mapping[str, Any]) -> dict[str, SignalType]:
+    """Return the signals among a block's arguments by Verilog port name: `name`, or `interface_attribute`."""
+    return {path: signal for name, value in arguments.items() for path, signal in signals_in(name, value)}
+
+
+def block_arguments(block: Block) -> dict[str, Any]:
+    """Return a block's arguments by name, including defaults."""
+    bound = inspect.signature(block.func).bind(*block.args, **block.kwargs)
+    bound.apply_defaults()
+    return dict(bound.arguments)
+
+
+def block_ports(block: Block) -> dict[str, SignalType]:
+    """Return a block's port signals by Verilog name."""
+    return port_signals(block_arguments(block))
+
+
+def signals_in(name: str, value: Any) -> Iterator[tuple[str, SignalType]]:
+    """Yield a variable's signals: itself, a record's word, an interface's attributes, or a list's elements."""
+    if isinstance(value, SignalType):
+        yield name, value
+    elif isinstance(value, Record):
+        yield f"{name}_word", value.word
+    elif isinstance(value, (list, tuple)):
+        for index, element in enumerate(value):
+            yield from signals_in(f"{name}_{index}", element)
+    elif getattr(value, "is_interface", False):
+        for attribute, element in vars(value).items():
+            yield from signals_in(f"{name}_{attribute}", element)

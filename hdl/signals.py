@@ -2,14 +2,15 @@
 """Signals of a given width; and instance ports without a signal: tied to a constant, or left open."""
 
 from myhdl import ConcatSignal, ResetSignal, Signal, intbv
-from myhdl._Signal import _Signal
+
+from raycaster.hdl.internals import SignalType
 
 
 class Signed(int):
     """The width in bits of a two's complement value; a plain `int` is the width of an unsigned one."""
 
 
-def initial(value: int, like: int | _Signal) -> bool | intbv:
+def initial(value: int, like: int | SignalType) -> bool | intbv:
     """Return a value for a given width or for another signal's type; one unsigned bit is a bool, as in MyHDL.
 
     Args:
@@ -23,20 +24,20 @@ def initial(value: int, like: int | _Signal) -> bool | intbv:
     return bool(value) if like.min is None else intbv(value, min=like.min, max=like.max)
 
 
-class Tied(_Signal):
+class Tied(SignalType):
     """A constant made by `tied`. In Verilog it is a number in connections, and a localparam if a process reads it."""
 
 
-class Unconnected(_Signal):
+class Unconnected(SignalType):
     """An open output made by `unconnected`. In Verilog it is an empty connection."""
 
 
-def tied(value: int, like: int | _Signal) -> Tied:
+def tied(value: int, like: int | SignalType) -> Tied:
     """Return a constant signal for inputs of instances, any number of levels down; `like` as for `initial`."""
     return Tied(initial(value, like))
 
 
-def unconnected(like: int | _Signal) -> Unconnected:
+def unconnected(like: int | SignalType) -> Unconnected:
     """Return a signal for an instance's output that nothing reads; `like` as for `initial`."""
     return Unconnected(initial(0, like))
 
@@ -46,22 +47,22 @@ def bits_for(count: int) -> int:
     return max(1, (count - 1).bit_length())
 
 
-def unsigned(width: int) -> _Signal:
+def unsigned(width: int) -> SignalType:
     """Return an unsigned signal, initially 0."""
     return Signal(intbv(0)[width:])
 
 
-def signed(width: int) -> _Signal:
+def signed(width: int) -> SignalType:
     """Return a two's complement signal, initially 0."""
-    return Signal(intbv(0, min=-(1 << (width - 1)), max=1 << (width - 1)))
+    return Signal(initial(0, Signed(width)))
 
 
-def bit() -> _Signal:
+def bit() -> SignalType:
     """Return a one-bit signal, initially low."""
     return Signal(bool(0))
 
 
-def side_by_side(signals: list) -> _Signal:
+def side_by_side(signals: list) -> SignalType:
     """Return the signals as one vector, the first in the lowest bits."""
     return ConcatSignal(*reversed(signals)) if len(signals) > 1 else signals[0]
 

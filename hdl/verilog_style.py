@@ -11,10 +11,7 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from myhdl._block import _Block
-from myhdl._enum import EnumItemType
-from myhdl._instance import _Instantiator
-
+from raycaster.hdl.internals import Block, EnumItemType, Process
 from raycaster.hdl.port_comments import commented, in_verilog, split
 
 LINE_LENGTH = 120
@@ -28,7 +25,7 @@ _OPERATORS = {
 }
 
 
-def restyle(text: str, block: _Block, ports: Sequence[str], vocabulary: Mapping[str, Any]) -> str:
+def restyle(text: str, block: Block, ports: Sequence[str], vocabulary: Mapping[str, Any]) -> str:
     """Restyle one module.
 
     A comment above a process is kept. Port lists become ANSI style, codes of states become names, constant expressions
@@ -41,7 +38,7 @@ def restyle(text: str, block: _Block, ports: Sequence[str], vocabulary: Mapping[
         vocabulary: meanings of Python names in comments.
     """
     for sub in block.subs:
-        if isinstance(sub, _Instantiator):
+        if isinstance(sub, Process):
             text = _comment(text, sub, block, vocabulary)
     # A block that declares nothing needs no name, which would cost Icarus a thread at each evaluation.
     text = re.sub(r"^(always [^\n]*begin): \w+\n(?! *(?:integer|reg)\b)", r"\1\n", text, flags=re.M)
@@ -73,7 +70,7 @@ def _size_words(text: str) -> str:
     return re.sub(r"\b(\w+) (<?=) (\d+)'h([0-9a-f]+);", size, text)
 
 
-def _comment(text: str, process: _Instantiator, block: _Block, vocabulary: Mapping[str, Any]) -> str:
+def _comment(text: str, process: Process, block: Block, vocabulary: Mapping[str, Any]) -> str:
     """Put the comment above a process, if there is one, above it in the Verilog."""
     comment = inspect.getcomments(process.funcobj)
     if not comment:
@@ -111,7 +108,7 @@ def _name_states(text: str, signal: str, state: Any) -> str:
     return re.sub(rf"^(reg [^\n]*\b{signal};\n)", rf"{constants}\1", text, flags=re.M)
 
 
-def _drop_modulo(text: str, block: _Block) -> str:
+def _drop_modulo(text: str, block: Block) -> str:
     """Drop the modulo of a sum if the target's width implies it: Verilog's assignment wraps around by itself."""
     widths = {name: len(signal) for name, signal in block.sigdict.items() if signal.val is not None}
 
@@ -180,7 +177,7 @@ def _is_one_group(text: str) -> bool:
     return False
 
 
-def _declare_ports(text: str, ports: Sequence[str], block: _Block, vocabulary: Mapping[str, Any]) -> str:
+def _declare_ports(text: str, ports: Sequence[str], block: Block, vocabulary: Mapping[str, Any]) -> str:
     """Declare each port once, in the module's head below its comment, and put the module's text above the head."""
     head = re.search(r"^module (\w+) \(\n[^)]*\);\n((?://[^\n]*\n)*)", text, re.M)
     if not head:

@@ -119,6 +119,21 @@ def test_apb_background(colour, alike, tmp_path):
     assert said.split() == [str(clocks), "pixels,", "0" if alike else str(clocks), "others"]
 
 
+@pytest.mark.parametrize("fault", ["", "sink.valid.next = level != 1"], ids=["right", "fault"])
+def test_fifo(fault, tmp_path):
+    """The documented queue works outside the project, writes a waveform, and its tests notice a fault."""
+    for source in (ROOT / "examples" / "fifo").glob("*.py"):
+        text = source.read_text()
+        (tmp_path / source.name).write_text(text.replace("sink.valid.next = level != 0", fault) if fault else text)
+    command = [sys.executable, "-m", "pytest", "-q", "-n", "0", "test_fifo.py"]
+    environment = os.environ | {"WAVES": "1", "GUI": ""}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == int(bool(fault)), done.stdout + done.stderr
+    if fault:
+        assert "3 failed" in done.stdout
+    assert (tmp_path / "build" / "fifo" / "fifo.fst").is_file()
+
+
 @pytest.mark.slow_sets("fault")
 @pytest.mark.parametrize(
     ("simulator", "fault"),

@@ -3,19 +3,13 @@
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Any
 
 from myhdl import ConcatSignal
-from myhdl._block import _Block
-from myhdl._enum import EnumItemType
-from myhdl._instance import _Instantiator
-from myhdl._ShadowSignal import _SliceSignal
-from myhdl._Signal import _Signal
 
-from raycaster.hdl.records import Record
+from raycaster.hdl.internals import Block, Process, SignalType, SliceSignal
+from raycaster.hdl.records import block_arguments, block_ports, signals_in
 
 
 @dataclass(frozen=True)
@@ -43,7 +37,7 @@ class Inside:
     ports: frozenset[int]
 
 
-def find_block(top: _Block, name: str) -> _Block:
+def find_block(top: Block, name: str) -> Block:
     """Return the first block of this name in an elaborated design.
 
     Raises:
@@ -53,17 +47,17 @@ def find_block(top: _Block, name: str) -> _Block:
     for candidate in waiting:
         if candidate.func.__name__ == name:
             return candidate
-        waiting += [sub for sub in candidate.subs if isinstance(sub, _Block)]
+        waiting += [sub for sub in candidate.subs if isinstance(sub, Block)]
     raise KeyError(name)
 
 
-def look_inside(top: _Block, opened: Collection[str]) -> Inside:
+def look_inside(top: Block, opened: Collection[str]) -> Inside:
     """Return an elaborated block's structure; blocks whose names are in `opened` are replaced by their own parts."""
     ports = block_ports(top)
     names: dict[int, tuple[str, str]] = {}
     parts: list[Part] = []
 
-    def visit(block: _Block, within: tuple[str, ...]) -> None:
+    def visit(block: Block, within: tuple[str, ...]) -> None:
         scope = block_arguments(block)
         for sub in block.subs:
             scope |= {name: value for name, value in sub.callinfo.symdict.items() if not name.startswith("_")}
@@ -71,9 +65,9 @@ def look_inside(top: _Block, opened: Collection[str]) -> Inside:
             for path, signal in signals_in(name, value):
                 names.setdefault(id(signal), (name, path))
         for sub in block.subs:
-            if isinstance(sub, _Block) and sub.func.__name__ in opened:
+            if isinstance(sub, Block) and sub.func.__name__ in opened:
                 visit(sub, (*within, sub.func.__name__))
-            elif isinstance(sub, _Block):
+            elif isinstance(sub, Block):
                 around = _whole({id(signal): signal for signal in block_ports(sub).values()})
                 reads, drives = (_whole(signals) & around for signals in _traffic(sub))
                 parts.append(Part(sub.func.__name__, True, within, reads - drives, drives))
@@ -85,10 +79,10 @@ def look_inside(top: _Block, opened: Collection[str]) -> Inside:
     return Inside(tuple(parts), names, frozenset(id(signal) for signal in ports.values()))
 
 
-Signals = dict[int, _Signal]
+Signals = dict[int, SignalType]
 
 
-def _traffic(block: _Block) -> tuple[Signals, Signals]:
+def _traffic(block: Block) -> tuple[Signals, Signals]:
     """Return all signals that are read, and all that are driven, in a block and below."""
     given = getattr(block.func, "given_verilog", None)
     reads: Signals = {}
@@ -97,13 +91,13 @@ def _traffic(block: _Block) -> tuple[Signals, Signals]:
         for name, signal in block_ports(block).items():
             (drives if name in given.outputs else reads)[id(signal)] = signal
     for sub in block.subs:
-        more_reads, more_drives = _traffic(sub) if isinstance(sub, _Block) else _traffic_of_process(sub)
+        more_reads, more_drives = _traffic(sub) if isinstance(sub, Block) else _traffic_of_process(sub)
         reads |= more_reads
         drives |= more_drives
     return reads, drives
 
 
-def _traffic_of_process(process: _Instantiator) -> tuple[Signals, Signals]:
+def _traffic_of_process(process: Process) -> tuple[Signals, Signals]:
     """Return the signals that a process reads, and those that it drives, except the edges and reset it waits for."""
 
     def find(names: Collection[str]) -> Signals:
@@ -118,59 +112,10 @@ def _whole(signals: Signals) -> frozenset[int]:
     waiting = list(signals.values())
     while waiting:
         signal = waiting.pop()
-        if isinstance(signal, _SliceSignal):
+        if isinstance(signal, SliceSignal):
             waiting.append(signal._sig)
         elif isinstance(signal, ConcatSignal):
             waiting += signal._sigargs
         else:
             found.add(id(signal))
     return frozenset(found)
-
-
-def state_names(top: _Block) -> dict[tuple[str, str], dict[int, str]]:
-    """Find the enumerated signals of an elaborated design.
-
-    Returns:
-        By module and signal, the name of each value as encoded in Verilog.
-    """
-    found = {}
-    for name, signal in top.sigdict.items():
-        if isinstance(signal.val, EnumItemType):
-            value: Any = signal.val
-            states = value._type
-            found[top.func.__name__, name] = {int(getattr(states, item)._val, 2): item for item in states._names}
-    for sub in top.subs:
-        if isinstance(sub, _Block):
-            found |= state_names(sub)
-    return found
-
-
-def port_signals(arguments: Mapping[str, Any]) -> dict[str, _Signal]:
-    """Return the signals among a block's arguments by Verilog port name: `name`, or `interface_attribute`."""
-    return {path: signal for name, value in arguments.items() for path, signal in signals_in(name, value)}
-
-
-def block_arguments(block: _Block) -> dict[str, Any]:
-    """Return a block's arguments by name, including defaults."""
-    bound = inspect.signature(block.func).bind(*block.args, **block.kwargs)
-    bound.apply_defaults()
-    return dict(bound.arguments)
-
-
-def block_ports(block: _Block) -> dict[str, _Signal]:
-    """Return a block's port signals by Verilog name."""
-    return port_signals(block_arguments(block))
-
-
-def signals_in(name: str, value: Any) -> Iterator[tuple[str, _Signal]]:
-    """Yield a variable's signals: itself, a record's word, an interface's attributes, or a list's elements."""
-    if isinstance(value, _Signal):
-        yield name, value
-    elif isinstance(value, Record):
-        yield f"{name}_word", value.word
-    elif isinstance(value, (list, tuple)):
-        for index, element in enumerate(value):
-            yield from signals_in(f"{name}_{index}", element)
-    elif getattr(value, "is_interface", False):
-        for attribute, element in vars(value).items():
-            yield from signals_in(f"{name}_{attribute}", element)

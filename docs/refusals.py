@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: MIT
+"""Designs that MyHDL converts to wrong Verilog, or to none, and that `raycaster.hdl` refuses: a table of the manual.
+
+Each has another form, which converts, and which gives the same outputs in MyHDL's simulator and in Verilog.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from textwrap import indent
+from typing import Any, NamedTuple
+
+from raycaster.hdl.elaboration import elaboration
+from raycaster.hdl.errors import UserError, faults_in_one_line
+from raycaster.hdl.hierarchy import convert_hierarchy
+from raycaster.hdl.signals import bit, unsigned
+from raycaster.outcomes import table
+
+MODULE = """\
+from myhdl import Constant, Signal, always, always_comb, block, concat, instances, intbv
+
+from raycaster.hdl.records import Record
+from raycaster.hdl.signals import Signed, bit, signed, tied, unconnected, unsigned
+
+
+@block
+def add(a, b, total, carry):
+    wide = unsigned(5)
+
+    @always_comb
+    def compute():
+        wide.next = a + b
+
+    @always_comb
+    def part():
+        total.next = wide[4:]
+        carry.next = wide[4]
+
+    return instances()
+
+
+@block
+def example(clk, a, b, index, result, flag):
+{body}
+
+    @always(clk.posedge)
+    def keep():
+        flag.next = a[0] ^ b[0] ^ index[0]
+
+    return instances()
+"""
+
+MARK = "  # refused"
+"""End of the line that an error names; without it, that is the line of the block."""
+
+
+class Refusal(NamedTuple):
+    """Bodies of a block: one that is refused, and what to write instead."""
+
+    name: str
+    refused: str
+    instead: str
+
+
+def design_of(body: str, directory: Path) -> tuple[Callable[..., Any], str]:
+    """Return the block with a body, and its source, which is written to a directory."""
+    text = MODULE.format(body=indent(body, "    "))
+    path = directory / "example.py"
+    path.write_text(text)
+    spec = importlib.util.spec_from_file_location("example", path)
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.example, text
+
+
+def design_arguments() -> dict[str, Any]:
+    """Return new signals for the block's ports."""
+    words = {name: unsigned(width) for name, width in (("a", 4), ("b", 4), ("index", 2), ("result", 4))}
+    return {"clk": bit(), **words, "flag": bit()}
+
+
+def refusal_of(body: str, directory: Path) -> tuple[str, str]:
+    """Return the source line that the error of a body names, and the error without its place.
+
+    Raises:
+        ValueError: the body is not refused.
+    """
+    function, text = design_of(body, directory)
+    try:
+        with elaboration(), faults_in_one_line():
+            convert_hierarchy(function(**design_arguments()), directory, "")
+    except UserError as error:
+        place, number, reason = str(error).split(":", 2)
+        assert Path(place) == directory / "example.py"
+        return text.splitlines()[int(number) - 1].strip(), reason.strip().removeprefix("example: ")
+    raise ValueError(f"not refused: {body}")
+
+
+def refusal_table() -> str:
+    """Return the manual's table."""
+    rows = []
+    for row in REFUSALS:
+        with TemporaryDirectory() as directory:
+            line, reason = refusal_of(row.refused, Path(directory))
+            rows.append([f"`{line.removesuffix(MARK)}`", reason])
+    return table(["line", "error, after file and line"], rows)
+
+
+def _process(statements: str, declared: str = "") -> str:
+    return f"{declared}\n@always_comb\ndef process():\n{indent(statements, '    ')}\n"
+
+
+WIDE = "wide = unsigned(5)\n@always_comb\ndef add_up():\n    wide.next = a + b\n"
+APART = "apart = signed(5)\n@always_comb\ndef subtract():\n    apart.next = a - b\n"
+OTHER = "other = unsigned(2)\n@always_comb\ndef invert():\n    other.next = ~index\n"
+BOTH = "both = unsigned(8)\n@always_comb\ndef join():\n    both.next = concat(a, b)\n"
+PAIR = "pair = Record({'high': 2, 'low': 2})\n"
+
+REFUSALS = (
+    Refusal("compared", _process("result.next = a + b > index  # refused"),
+            _process("result.next = wide > index", WIDE)),
+    Refusal("condition", _process("if a + b:  # refused\n    result.next = 1\nelse:\n    result.next = 0"),
+            _process("if wide:\n    result.next = 1\nelse:\n    result.next = 0", WIDE)),
+    Refusal("shifted", _process("result.next = (a + b) >> 1  # refused"), _process("result.next = wide >> 1", WIDE)),
+    Refusal("sign", _process("result.next = a - b < 0  # refused"), _process("result.next = apart < 0", APART)),
+    Refusal("remainder", _process("result.next = (a - b) % 8  # refused"),
+            _process("result.next = apart[3:]", APART)),
+    Refusal("index", _process("result.next = b[index - a]  # refused"), _process("result.next = b[index]")),
+    Refusal("inverted", _process("result.next = ~index == a  # refused"),
+            _process("result.next = other == a", OTHER)),
+    Refusal("bits", _process("result.next = concat(a, b)[6:2]  # refused"),
+            _process("result.next = both[6:2]", BOTH)),
+    Refusal("function", _process("result.next = max(a, b)  # refused"),
+            _process("if a > b:\n    result.next = a\nelse:\n    result.next = b")),
+    Refusal("return", _process("result.next = b\nif a == 0:\n    return  # refused\nresult.next = a"),
+            _process("result.next = b\nif a != 0:\n    result.next = a")),
+    Refusal("undriven", _process("result.next = a ^ nothing", "nothing = unsigned(4)  # refused\n"),
+            _process("result.next = a ^ nothing", "nothing = tied(0, 4)\n")),
+    Refusal("unread", "carry = bit()  # refused\nadding = add(a, b, result, carry)\n",
+            "adding = add(a, b, result, unconnected(1))\n"),
+    Refusal("constant", _process("result.next = a ^ offset",
+                                 "offset = Constant(intbv(-3, min=-8, max=8))  # refused\n"),
+            _process("result.next = a ^ offset", "offset = tied(5, 4)\n")),
+    Refusal("slices", _process("for i in range(2):\n    result.next[i] = halves[i][0]",
+                               "halves = [a(2, 0), a(4, 2)]  # refused\n"),
+            _process("for i in range(2):\n    result.next[i] = a[2 * i]\nresult.next[4:2] = 0")),
+    Refusal("names", _process("result.next = pair.high ^ pair_high", f"{PAIR}pair_high = unsigned(2)  # refused\n"
+            "@always(clk.posedge)\ndef take():\n    pair.word.next = a\n    pair_high.next = index\n"),
+            _process("result.next = pair.high ^ other", f"{PAIR}other = unsigned(2)\n"
+            "@always(clk.posedge)\ndef take():\n    pair.word.next = a\n    other.next = index\n")),
+    Refusal("nameless", "one = add(a, b, unsigned(4), unconnected(1))\ntwo = add(a, b, result, unconnected(1))\n",
+            "one = add(a, b, unconnected(4), unconnected(1))\ntwo = add(a, b, result, unconnected(1))\n"),
+    Refusal("not in MyHDL", _process("result.next = a / b  # refused"), _process("result.next = a")),
+)  # fmt: skip
+"""A design for each thing that is refused."""

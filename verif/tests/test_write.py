@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: MIT
+"""The whole design as Verilog."""
+
+import ast
+import filecmp
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from raycaster import rtl
+from raycaster.configuration import configure
+from raycaster.convert import write
+from raycaster.convert.provenance import verilog_digest
+from raycaster.convert.take_home import FILE_LIST
+from raycaster.convert.write import write_verilog
+from raycaster.hdl.errors import UserError
+from raycaster.output import emptied
+
+
+@pytest.mark.parametrize("units", [1, 8])
+def test_a_unit_is_one_module_and_many_instances(units, tmp_path):
+    config = configure(units=units, screen="tiny", rectangles=2, allow_underrun=True)
+    files = write_verilog(config, tmp_path / "verilog")
+    names = [path.stem for path in files]
+    assert len(set(names)) == len(names)
+    for module in ("ray_unit", "line_buffer"):
+        assert names.count(module) == 1
+        instances = [re.findall(rf"^{module} {module}(_\d+)?_i \($", path.read_text(), re.M) for path in files]
+        assert sum(map(len, instances)) == units
+    defined = {path: re.findall(r"^module (\w+)", path.read_text(), re.M) for path in files}
+    assert defined == {path: [path.stem] for path in files}
+    assert names[-1] == "ray_caster_module"
+    assert (tmp_path / "verilog" / FILE_LIST).read_text().split() == [path.name for path in files]
+
+
+def test_every_module_is_made_of_nothing_unknown(tmp_path):
+    """In the file list, each module follows those that it instantiates."""
+    files = write_verilog(configure(screen="tiny", units=2, rectangles=2, allow_underrun=True), tmp_path / "verilog")
+    known = set()
+    for path in files:
+        used = set(re.findall(r"^(\w+) \w+_i \($", path.read_text(), re.M))
+        assert used <= known, path.name
+        known.add(path.stem)
+
+
+def test_the_header_says_what_and_never_when(tmp_path):
+    config = configure(screen="tiny", units=2, rectangles=2, fraction_bits=1, allow_underrun=True)
+    files = write_verilog(config, tmp_path / "verilog")
+    given = {path for path in files if path.stem in ("clock_gate", "by_axis")}
+    assert len(given) == 2
+    assert all(path.read_text() == Path(rtl.__path__[0], "common", path.name).read_text() for path in given)
+    for path in set(files) - given:
+        lines = path.read_text().splitlines()
+        assert lines[:2] == [f"// RayCaster: {path.stem}", f"// Configuration: {config.name}"]
+        assert "// SPDX-License-Identifier: MIT" in lines
+        assert not re.search(r"\b20\d\d-|(?<!\[)\b\d\d:\d\d|MyHDL|Generated", path.read_text())
+
+
+@pytest.mark.slow
+def test_any_process_writes_the_same_bytes(tmp_path):
+    # MyHDL iterates over Python sets, whose order depends on the hash seed.
+    numbers = ("1", "2", "3", "4")
+    for number in numbers:
+        command = [sys.executable, "-m", "raycaster.cli", "verilog", "--output", str(tmp_path / number)]
+        command += ["--screen", "tiny", "--units", "4", "--rectangles", "5", "--allow-underrun"]
+        subprocess.run(command, env={**os.environ, "PYTHONHASHSEED": number}, check=True, capture_output=True)
+    first, *others = (
+        sorted(str(path.relative_to(tmp_path / number)) for path in (tmp_path / number).rglob("*") if path.is_file())
+        for number in numbers
+    )
+    assert first
+    for number, files in zip(numbers[1:], others, strict=True):
+        assert files == first
+        assert filecmp.cmpfiles(tmp_path / "1", tmp_path / number, first, shallow=False) == (first, [], [])
+
+
+def test_a_directory_is_replaced_as_a_whole(tmp_path):
+    directory = tmp_path / "verilog"
+    config = configure(screen="tiny", units=2, rectangles=2, allow_underrun=True)
+    write_verilog(config, directory)
+    (directory / "ray_unit_of_yesterday.v").write_text("module ray_unit;")
+    write_verilog(config, directory)
+    assert not list(directory.glob("*yesterday*"))
+    assert [path.name for path in tmp_path.iterdir()] == ["verilog"], "nothing else is left"
+
+
+def test_a_conversion_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
+    directory = emptied(tmp_path / "verilog")
+    (directory / "kept.v").write_text("module kept;")
+
+    def fail(*_):
+        raise UserError("broken")
+
+    monkeypatch.setattr(write, "convert_hierarchy", fail)
+    with pytest.raises(UserError):
+        write_verilog(configure(screen="tiny", units=2, rectangles=2, allow_underrun=True), directory)
+    assert [path.name for path in directory.glob("*.v")] == ["kept.v"]
+    assert [path.name for path in tmp_path.iterdir()] == ["verilog"]
+
+
+def test_one_block_alone_has_logic_on_the_clock():
+    """A board can replace this block with a register; all other blocks use only the clock's edge."""
+    users = set()
+    for path in Path(rtl.__file__).parent.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            decorators = " ".join(map(ast.unparse, getattr(node, "decorator_list", ())))
+            if re.match(r"always|instance", decorators):
+                names = {name.id for line in node.body for name in ast.walk(line) if isinstance(name, ast.Name)}
+                users |= {path.name} & ({path.name} if "clk" in names else set())
+    assert users == {"pixel_clock.py"}
+
+
+KEPT_DIGESTS = {"seed": "38e1fd2fa92229a6", "exact": "a12c8e17825437cb", "beam": "fe08ac35eabdc0d4"}
+"""Digests of the default designs' Verilog without comments, made by CPython 3.11 with PYTHONHASHSEED unset."""
+
+
+@pytest.mark.parametrize("engine", KEPT_DIGESTS)
+def test_any_python_writes_the_same_verilog(engine):
+    digest = verilog_digest(configure(engine=engine))
+    assert digest == KEPT_DIGESTS[engine], "write the new digest here if the hardware is meant to have changed"
