@@ -101,7 +101,8 @@ class Module:
 
     def _bits(self, name: str) -> list[Bit]:
         signal, _, index = name.partition("[")
-        bits: list[Bit] = [self._seen.get(bit, bit) for bit in self._nets[signal]["bits"]]
+        nets: list[Bit] = self._nets[signal]["bits"]
+        bits = [self._seen.get(bit, bit) for bit in nets]
         return [bits[int(index[:-1])]] if index else bits
 
     def _replace(self, number: int, kind: str, signal: str) -> None:
