@@ -10,9 +10,10 @@ from pathlib import Path
 from raycaster import rtl
 from raycaster.configuration import Configuration, configure
 from raycaster.docs.facts import table
+from raycaster.verif.formal.alone import FIXED_SCENE, TableAlone
 from raycaster.verif.formal.lemmas import LEMMAS
 from raycaster.verif.formal.properties import PROPERTIES
-from raycaster.verif.formal.prover import FixedTable, FoldWidths, Property, TesterWidths
+from raycaster.verif.formal.prover import Property
 from raycaster.verif.mutation.mutate import expectations
 
 RTL = Path(rtl.__file__).parent
@@ -31,8 +32,9 @@ def scale(of_it: Sequence[Property]) -> tuple[bool, str]:
     The number of rectangles is a width if the property covers their index or their memory. The number of reflections is
     a range if the property's wrapper has it as a parameter.
     """
-    narrow = [proof.design.coordinate for proof in of_it if isinstance(proof.design, TesterWidths | FoldWidths)]
-    tables = [proof.design.fixed.rectangles for proof in of_it if isinstance(proof.design, FixedTable)]
+    alone = [proof.parameters for proof in of_it if not isinstance(proof.design, Configuration)]
+    narrow = [parameters["COORDINATE_BITS"] for parameters in alone if "COORDINATE_BITS" in parameters]
+    tables = [len(FIXED_SCENE.rect) for proof in of_it if isinstance(proof.design, TableAlone)]
     configured = [(proof, proof.design) for proof in of_it if isinstance(proof.design, Configuration)]
     counts = [
         design.rectangles
@@ -40,7 +42,7 @@ def scale(of_it: Sequence[Property]) -> tuple[bool, str]:
         if "INDEX_BITS" in proof.parameters or "rect_mem" in proof.modules
     ]
     mirrors = [design.reflections for proof, design in configured if {"REFLECTIONS", "MIRRORS"} & {*proof.parameters}]
-    mirrors += [proof.design.mirrors for proof in of_it if isinstance(proof.design, FoldWidths)]
+    mirrors += [parameters["MIRRORS"] for parameters in alone if "MIRRORS" in parameters]
     full = not narrow and not tables and (not counts or max(counts) >= configure().rectangles)
     sizes = [] if narrow or not full else ["full width"]
     for numbers, unit in ((narrow, "bits"), (tables + counts, "rectangles"), (mirrors, "reflections")):

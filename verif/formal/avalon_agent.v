@@ -4,6 +4,26 @@
 // Assumed: a transfer either reads or writes, as Avalon requires; one cycle of reset at first. Reset may come again at
 // any time; StartScreen, the budget's counters and the renderer's flags are arbitrary. The solver chooses the constant
 // `watched`, so what holds for it holds for every address; likewise the rectangle `watched_slot`.
+//
+// [proof]
+// claim = """reads are answered once and in order, no write is lost, commit is atomic, sticky bits and interrupt \
+// are kept"""
+// modules = ["avalon_interface", "camera_mem", "rect_mem", "rect_slot", "rect_sorter", "scene_word"]
+// cut = ["rect_sorter"]
+// as_registers = ["rect_mem"]
+// induction = 3
+// reach = 12
+// quick = ["one-unit two"]
+// designs = ["one-unit two reflections=2 rounding=nearest fraction_bits=4 rows=200"]
+// [faults]
+// "vga240-u1-r2-m1-f0t-d3-c8" = ["avalon_interface.wait_request or avs_s0_write",
+//   "avalon_interface.avs_s0_readdatavalid or bus_write", "avalon_interface.bus_write and bus_mask[0]",
+//   "avalon_interface.bus_mask[15] 0", "avalon_interface.commit_pending 0",
+//   "avalon_interface.progress_underrun unless bus_write", "avalon_interface.irq as irq_pending",
+//   "avalon_interface.avs_s0_readdata as read_data", "rect_mem.readback or old_surface",
+//   "rect_mem.next_live as latest_copies_pending", "rect_mem.latest_copies_pending as latest_copies_live",
+//   "rect_mem.written 1", "rect_slot.shadow_usable as usable", "scene_word.bus_commit or bus_write",
+//   "scene_word.bus_go_live or bus_commit"]
 
 module avalon_agent #(
     parameter ADDRESS_BITS = 5, parameter [31:0] VERSION_WORD = 0, parameter [31:0] ENGINE_WORD = 0,

@@ -5,6 +5,21 @@
 // requires. The agent asserts waitrequest for at most MOST_WAIT cycles per transfer, and answers a read with one
 // readdatavalid, 2 to MOST_LATENCY cycles after it accepted it; readdata changes with an answer only. bready and rready
 // are arbitrary. One cycle of reset at first; it may come again at any time.
+//
+// [proof]
+// claim = "a write and a read at a time are one transfer each, answered once, in time, and held until accepted"
+// modules = ["axi4lite_bridge"]
+// induction = "2 * MOST_WAIT + MOST_LATENCY + 5"  # the two directions wait for each other, limited only by the bounds
+// reach = "3 * (MOST_WAIT + MOST_LATENCY) + 8"
+// label = "{ADDRESS_BITS} bits, {MOST_WAIT} and {MOST_LATENCY} cycles"
+// quick = ["alone=axi4lite MOST_WAIT=1 MOST_LATENCY=2"]
+// designs = ["alone=axi4lite one-unit rectangles=32 MOST_WAIT=3 MOST_LATENCY=4"]
+// [faults]
+// "6 bits, 1 and 2 cycles" = ["axi4lite_bridge.writing or write_taken", "axi4lite_bridge.writing or s_axi_awvalid",
+//   "axi4lite_bridge.responding and s_axi_bready", "axi4lite_bridge.s_axi_bready 1",
+//   "axi4lite_bridge.avm_m0_waitrequest 0", "axi4lite_bridge.s_axi_awaddr as s_axi_araddr",
+//   "axi4lite_bridge.answer_kept 0", "axi4lite_bridge.asking or answer_kept", "axi4lite_bridge.read_waits 0",
+//   "axi4lite_bridge.reading 1"]
 
 module axi4lite_transfers #(parameter ADDRESS_BITS = 4, parameter MOST_WAIT = 1, parameter MOST_LATENCY = 2) (
     input clk, input reset,

@@ -7,6 +7,26 @@
 // lemmas product-in-range, next-column (n D[p] = (n - T[a]) D[p] + T[a] D[p]) and ahead-of-mirror, and that a product
 // with 0 is 0. Assumed, as the lane guarantees: the rectangle and the camera are constant, as are D[x] and D[z] unless
 // TURN; each input comes in the cycle in which it is read; an axis is 0, 1 or 2; the last mirror was ahead.
+//
+// [proof]
+// claim = "a rectangle is hit if the cross-multiplied definition from the mirrored eye says so, at full width"
+// modules = ["fold_tester if FOLDED", "ray_tester if not FOLDED", "bound_tester"]
+// any_product = true
+// induction = "TESTER_LATENCY + (FOLD_LEAD if FOLDED else 0) + 1"
+// reach = "TESTER_LATENCY + (FOLD_LEAD if FOLDED else 0) + 2"
+// label = "{DESIGN} {'folded' if FOLDED else 'straight'}"
+// quick = ["beam two FOLDED=0,1"]
+// designs = [
+//   "beam two reflections=2 FOLDED=0,1", "beam two pairs FOLDED=0,1", "beam two pairs turn FOLDED=0,1",
+//   "beam two turn patterns reflections=4 FOLDED=0,1",
+// ]
+// [faults]
+// "beam-vga240-s2-u1-r2-m1-c8 straight" = ["bound_tester.low_edge as twice_low",
+//   "bound_tester.twice_high signed-short", "ray_tester.ahead 1", "ray_tester.back_1 as back"]
+// "beam-vga240-s2-u1-r2-m1-c8 folded" = ["fold_tester.folded_p[18] 0", "fold_tester.turned_way_p increased",
+//   "fold_tester.seen_distance edge", "fold_tester.before_border_2 inverted", "fold_tester.met_2 1"]
+// "beam-vga180-s6-u2-r2-m1-c8 folded" = ["fold_tester.seen_turn 0", "fold_tester.folded_q as folded_p",
+//   "fold_tester.e as size_a"]
 
 module beam_tester_products #(
     parameter FOLDED = 0, parameter STAGED = 0, parameter TURN = 0, parameter PATTERNS = 0,

@@ -6,6 +6,21 @@
 //
 // Assumed, as the registers guarantee: no more reflections than the design has; mirrors of 0 to 4 quarters; a picture
 // that is constant while a pixel is computed. The seen colours may change in every cycle.
+//
+// [proof]
+// claim = """a pixel is the golden model's blend of its rays, with mirrors of half, or one of any quarters, at \
+// full width"""
+// modules = ["colour_blend", "colour_mix if MIRRORS and MIXES", "colour_mean if MIRRORS and not MIXES", "colour_seen"]
+// parameters = { MIRRORS = "REFLECTIONS", LATENCY = "BLEND_LATENCY" }
+// induction = "LATENCY"
+// reach = "LATENCY + 2"
+// quick = ["beam two reflections=2", "beam two materials"]
+// designs = ["beam two reflections=1,3,4"]
+// [faults]
+// "beam-vga240-s2-u1-r2-m2-c8" = ["colour_mean_1.other[8] 0", "colour_mean.reflections edge",
+//   "colour_seen_1.reached 1"]
+// "beam-vga240-s2-u1-r2-m1-c8-materials" = ["colour_mix.apart short", "colour_mix.mirror[0] unless mirror[1]",
+//   "colour_seen.mirror as seen_mirror"]
 
 module blend_exact #(
     parameter MIRRORS = 1, parameter MIXES = 0, parameter COLOUR_BITS = 8, parameter LATENCY = 2

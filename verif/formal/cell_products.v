@@ -6,6 +6,17 @@
 //
 // Assumed, as the control guarantees: P[v] starts three cycles after P[u], and all inputs are constant meanwhile. The
 // hit is assumed to be within the world, 0 <= P <= 511.
+//
+// [proof]
+// claim = "the digits that give a pattern's cell are those of the quotient, by long division, at full width"
+// modules = ["cell_finder", "divider_step"]
+// any_product = true
+// induction = 2
+// reach = 8
+// designs = ["exact one-unit turn materials patterns reflections=0,1,2,3,4", "exact one-unit patterns"]
+// [faults]
+// "exact-vga240-u1-r12-m1-c8-patterns" = ["divider_step.difference edge", "hit_component.along[0] 0",
+//   "cell_finder.point short", "hit_component.turned_way as way", "cell_finder.odd_v as digits_1"]
 
 module cell_products #(
     parameter COORDINATE_BITS = 9, parameter LOOK_BITS = 56, parameter SLOPE_BITS = 8, parameter EYE_BITS = 11

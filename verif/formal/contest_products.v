@@ -4,6 +4,25 @@
 //
 // Assumed about products with a factor wider than a multiplier is the lemma product-in-parts. All inputs may change in
 // every cycle.
+//
+// [proof]
+// claim = "the nearer of two candidates wins, by cross-multiplication, or the first if they tie, at full width"
+// modules = ["nearest_of_two"]
+// any_product = true
+// induction = "LATENCY"
+// reach = "LATENCY + 2"
+// quick = ["beam two", "beam two pairs", "beam two turn patterns reflections=4"]
+// designs = ["beam two turn", "beam two pairs turn"]
+// [parameters]
+// LATENCY = "CONTEST_LATENCY"
+// REST_BITS = "CANDIDATE_BITS - 2 - NUMERATOR_BITS - DENOMINATOR_BITS"
+// [faults]
+// "beam-vga240-s2-u1-r2-m4-c8-turn-patterns" = ["nearest_of_two.second_product edge",
+//   "nearest_of_two.second_high as first_high", "nearest_of_two.second_more[11] 0",
+//   "nearest_of_two.second_1_valid 1"]
+// "beam-vga180-s6-u2-r2-m1-c8-turn" = ["nearest_of_two.second_high short"]
+// "beam-vga180-s6-u2-r2-m1-c8" = ["nearest_of_two.first_product as second_product",
+//   "nearest_of_two.second_way short", "nearest_of_two.second_way as second_product"]
 
 module contest_products #(
     parameter LATENCY = 2, parameter NUMERATOR_BITS = 10, parameter DENOMINATOR_BITS = 9, parameter REST_BITS = 4

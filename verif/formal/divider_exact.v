@@ -7,6 +7,24 @@
 // A product of two variables is hard for a solver. So in the second part multiplication is any function with one known
 // property: appending digits to a number shifts its product and adds that of the digits (`digits-appended`). As a
 // division delivers its digits in this way, the proof by induction needs only additions.
+//
+// [proof]
+// claim = "quotient * divisor + remainder = dividend, rounded as configured, or overflow"
+// modules = ["divider", "divider_step"]
+// any_product = "PART == 1"
+// parameters = { WIDTH = "POSITION_BITS", BITS = "DIVIDER_BITS", STEPS = "DIVIDER_STEPS" }
+// induction = 1
+// label = "{DESIGN} {('digits', 'product', 'result')[PART]}"
+// designs = [
+//   "tiny two divider_bits=3,2,1 rounding=truncate,nearest PART=0,1,2",
+//   "tiny two fraction_bits=1 divider_bits=3 rounding=nearest PART=0,1,2",
+//   "tiny two fraction_bits=4 divider_bits=3 PART=0,1,2",
+//   "tiny two fraction_bits=8 divider_bits=2,1 rounding=nearest PART=0,1,2",
+// ]
+// [faults]
+// "tiny48-u2-r2-m1-f0t-d3-c8 digits" = ["divider_step.difference edge", "divider.too_large 0"]
+// "tiny48-u2-r2-m1-f0t-d1-c8 product" = ["divider.load_divider 0", "divider_step.next_digits halved",
+//   "divider_step.next_digits[1] 0"]
 
 module divider_exact #(
     parameter WIDTH = 9, parameter BITS = 1, parameter STEPS = 9, parameter NEAREST = 0, parameter PART = 2

@@ -4,6 +4,21 @@
 //
 // Assumed, as the control guarantees: a ray is loaded before it is reflected; an axis is 0, 1 or 2. Mirrors beyond the
 // last reflection are don't care. All other inputs may change in every cycle.
+//
+// [proof]
+// claim = "the eye is the camera mirrored in each plane, in range, with the right signs and corner, at full width"
+// modules = ["eye_register"]
+// parameters = { BASIS_BITS = "CAMERA_BITS - 3 * COORDINATE_BITS" }
+// induction = 1
+// reach = 6
+// quick = ["exact one-unit turn materials patterns reflections=4"]
+// designs = [
+//   "exact one-unit turn=0,1 reflections=0,1,2,3,4", "exact one-unit turn materials patterns reflections=0,1,2,3,4",
+// ]
+// [faults]
+// "exact-vga240-u1-r12-m4-c8-turn-materials-patterns" = ["eye_register.twice halved",
+//   "eye_register.image signed-short", "eye_register.difference negated", "eye_register.found_at_mirror 0",
+//   "eye_register.flipped_y 1"]
 
 module eye_exact #(
     parameter COORDINATE_BITS = 9, parameter LOOK_BITS = 24, parameter BASIS_BITS = 0, parameter EYE_BITS = 11,

@@ -6,6 +6,23 @@
 // Assumed, as the control guarantees: a division starts two cycles after its plane was taken, with none taken in
 // between, lasts STEPS cycles, and starts at least as many after the previous one; it may be abandoned at its start.
 // The ray is constant while a rectangle is in progress. `offered` is the rectangle that has left the dividers.
+//
+// [proof]
+// claim = "hit, depth and point are those of the golden model's a + b * (c - d) / e, at full width"
+// modules = ["intersection_finder", "intersection_helper", "magnitude", "cell_parity if PATTERNS", "divider"]
+// cut = ["divider"]
+// any_product = true
+// parameters = { STEPS = "DIVIDER_STEPS" }
+// induction = 1
+// reach = "STEPS + 5"
+// quick = ["one-unit"]
+// designs = ["one-unit patterns materials", "one-unit fraction_bits=8 rounding=nearest divider_bits=2"]
+// [faults]
+// "vga240-u1-r12-m1-f0t-d3-c8" = ["intersection_finder.u_value edge",
+//   "intersection_finder.by_axis_8_i.on_z as ray_z", "intersection_helper.stored_negative inverted",
+//   "intersection_helper.e_negative inverted", "intersection_helper.away short",
+//   "intersection_helper.loaded_word as started_word"]
+// "vga240-u1-r12-m1-f0t-d3-c8-materials-patterns" = ["intersection_finder.cell_parity_1_i.value as u_value"]
 
 // A product of a width used nowhere else, so it is any function; overflow and quotient are bits of it.
 module any_division #(parameter POSITION_BITS = 9) (

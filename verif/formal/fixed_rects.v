@@ -6,6 +6,18 @@
 // times. Commit and StartScreen are arbitrary, except that no commit comes in the cycle after a write, as is proved for
 // the registers. One cycle of reset at first, which may come again. Behind either, an engine consists of the same
 // modules, so this is all that a fixed scene changes.
+//
+// [proof]
+// claim = "a fixed scene's table returns the same rectangles as a memory that holds the scene's words"
+// modules = ["rect_mem", "rect_slot", "rect_sorter", "rect_rom"]
+// as_registers = ["rect_mem"]
+// induction = 3
+// reach = 16
+// label = "{ENGINE}, {'alike' if ALIKE else 'different'}"
+// quick = ["alone=table engine=seed,beam ALIKE=0"]
+// designs = ["alone=table engine=seed,beam ALIKE=1"]
+// [faults]
+// "seed, different" = ["rect_sorter.y_low as written_y_0 in 14", "rect_rom.rects_fetch 1 in 14"]
 
 module fixed_rects #(
     parameter INDEX_BITS = 2, parameter ADDRESS_BITS = 5, parameter RECT_BITS = 71, parameter LATENCY = 1,

@@ -7,6 +7,23 @@
 // as the engine guarantees: bounds in order, axes 0 to 2, and mirrors that the ray meets one after the other, or in one
 // point if they are on different axes. VIEW_DISTANCE is the slope along x; 0 means any slope, as with a camera that
 // turns.
+//
+// [proof]
+// claim = "a ray hits a rectangle if the ray from the mirrored eye, by a division, is within it and beyond the mirror"
+// modules = ["ray_fold", "ray_tester", "fold_tester", "bound_tester"]
+// induction = 8
+// reach = 9
+// label = "{COORDINATE_BITS} and {SLOPE_BITS} bits, {MIRRORS} mirrors{'' if VIEW_DISTANCE else ', turned'}"
+// quick = ["alone=fold COORDINATE_BITS=2 SLOPE_BITS=1 VIEW_DISTANCE=1 MIRRORS=1"]
+// designs = [
+//   "alone=fold COORDINATE_BITS=2 SLOPE_BITS=1 VIEW_DISTANCE=0 MIRRORS=1",
+//   "alone=fold COORDINATE_BITS=2 SLOPE_BITS=1 VIEW_DISTANCE=1 MIRRORS=2",
+//   "alone=fold COORDINATE_BITS=2 SLOPE_BITS=2 VIEW_DISTANCE=2 MIRRORS=1,2",
+//   "alone=fold COORDINATE_BITS=3 SLOPE_BITS=2 VIEW_DISTANCE=3 MIRRORS=1",
+// ]
+// [faults]
+// "2 and 1 bits, 1 mirrors" = ["fold_tester.met_2 1", "fold_tester.seen_distance edge",
+//   "ray_fold.sum_xz_1 increased", "bound_tester.back_1 0", "bound_tester.low_edge as twice_low"]
 
 module fold_exact #(
     parameter COORDINATE_BITS = 2, parameter SLOPE_BITS = 2, parameter VIEW_DISTANCE = 2, parameter MIRRORS = 1,
@@ -124,15 +141,7 @@ wire more_p = ahead && length_p % e != 0, more_q = ahead && length_q % e != 0;
 wire signed [WIDE-1:0] base_p = slope_p < 0 ? eye_p - whole_p : eye_p + whole_p;
 wire signed [WIDE-1:0] base_q = slope_q < 0 ? eye_q - whole_q : eye_q + whole_q;
 
-// P is base + more, or base - more, with 0 <= more < 1.
-function within(input signed [WIDE-1:0] base, input more, input negative, input signed [WIDE-1:0] low,
-                input signed [WIDE-1:0] high);
-    if (negative) within = (more ? base > low : base >= low) && base <= high;
-    else within = base >= low && (more ? base < high : base <= high);
-endfunction
-function beyond(input signed [WIDE-1:0] base, input more, input negative, input signed [WIDE-1:0] place);
-    beyond = negative ? base < place || base == place && more : base > place || base == place && more;
-endfunction
+`include "quotient_point.v"
 wire met = two && together && axis == axis_1;
 wire at_mirror = one && last_axis != axis
     && (last_axis == on_p ? base_p == last_plane && !more_p : base_q == last_plane && !more_q);

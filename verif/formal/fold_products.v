@@ -7,6 +7,22 @@
 // the mirror is what is proved about the image after it: its range, by the number of mirrors so far. Assumed, as the
 // lane guarantees: an axis is 0, 1 or 2, and the slope is read in the cycle after the mirror. All inputs except the
 // number of the mirror may change in every cycle.
+//
+// [proof]
+// claim = "at each mirror the ray is folded like the mirrored eye and slope, and no number overflows, at full width"
+// modules = ["ray_fold"]
+// any_product = true
+// induction = 4
+// reach = 5
+// quick = ["beam two"]
+// designs = [
+//   "beam two reflections=2", "beam two pairs", "beam two pairs turn", "beam two turn patterns reflections=4",
+// ]
+// [faults]
+// "beam-vga240-s2-u1-r2-m1-c8" = ["ray_fold.sum_xz_1 increased", "ray_fold.slope_z as slope_y",
+//   "ray_fold.distance_1 as last_distance", "ray_fold.turn_y signed-short", "ray_fold.folds_y as y_back"]
+// "beam-vga240-s2-u1-r2-m2-c8" = ["ray_fold.turn negated", "ray_fold.back_y_2 or back_z_2",
+//   "ray_fold.before_met_x 0"]
 
 module fold_products #(
     parameter COORDINATE_BITS = 9, parameter SLOPE_BITS = 9, parameter STEEPEST = 320, parameter REFLECTIONS = 1,

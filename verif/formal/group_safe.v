@@ -4,6 +4,22 @@
 //
 // Products and bounds are arbitrary numbers that grow linearly along the row; row-setup proves that they are products.
 // Assumed about them: the lemma between, and that they fit their bits at the group's end, as at its start.
+//
+// [proof]
+// claim = "no rectangle that a ray of the group hits is left out, at full width"
+// modules = ["group_tester"]
+// induction = 2
+// reach = 4
+// quick = ["exact culling=1"]
+// designs = ["engine=seed"]
+// [parameters]
+// SLOPE_BITS = "SLOPE_BITS + 1"
+// WAY_BITS = "WALK_BITS"
+// WALK_BITS = "WIDE_WALK_BITS"
+// GROWTH_BITS = "WIDE_BITS"
+// [faults]
+// "exact-vga240-u4-r12-m1-c8-k1" = ["group_tester.end_least_p edge", "group_tester.end_way_p signed-short",
+//   "group_tester.back inverted", "group_tester.behind or end_back", "group_tester.same_way_1 1"]
 
 module group_safe #(
     parameter UNITS = 4, parameter UNIT_BITS = 2, parameter RECTANGLES = 12, parameter INDEX_BITS = 4,

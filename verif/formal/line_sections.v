@@ -3,6 +3,19 @@
 //
 // Assumed, as `render_counters` proves for the renderer: the offsets of reads and writes are below the number of
 // groups. No state is involved, so one step covers all steps.
+//
+// [proof]
+// claim = "a section of the line buffer is never read while it is written"
+// modules = ["line_buffer"]
+// induction = 1
+// quick = ["engine=seed", "tiny two"]
+// designs = ["reflections=2", "units=16 rectangles=4"]
+// [parameters]
+// WRITE_BITS = "OFFSET_BITS"
+// READ_BITS = "GROUP_BITS"
+// ADDRESS_BITS = "(2 * GROUPS - 1).bit_length()"
+// [faults]
+// "tiny48-u2-r2-m1-f0t-d3-c8" = ["line_buffer.read_address short", "line_buffer.line_buf_sel unless write"]
 
 module line_sections #(
     parameter GROUPS = 10, parameter WRITE_BITS = 4, parameter READ_BITS = 4, parameter ADDRESS_BITS = 5,

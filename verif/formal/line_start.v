@@ -7,6 +7,19 @@
 //
 // Assumed, as rect_setup guarantees: its last load comes at least LATENCY cycles after its start. Assumed about the
 // renderer: lines start at least AIM_LATENCY cycles apart, and the camera is constant along a line.
+//
+// [proof]
+// claim = "with a turning camera, a line gets its first column's slope, and then the growth per step, at full width"
+// modules = ["line_starter"]
+// any_product = true
+// parameters = { SLOPE_BITS = "SLOPE_BITS + 1", LATENCY = "SETUP_LATENCY" }
+// induction = "AIM_LATENCY + 1"
+// reach = 14
+// quick = ["beam two turn"]
+// designs = ["beam two pairs turn"]
+// [faults]
+// "beam-vga240-s2-u1-r2-m1-c8-turn" = ["line_starter.ages[3] 0", "line_starter.y_product signed-short",
+//   "line_starter.factor negated", "line_starter.start_sweep as ages[1]"]
 
 module line_start #(
     parameter PIXELS = 1, parameter CAMERA_BITS = 117, parameter BASIS_BITS = 10, parameter FACTOR_BITS = 9,

@@ -5,6 +5,17 @@
 //
 // Assumed, as the control guarantees: nothing is offered in the cycle of a reset. All other inputs may change in every
 // cycle.
+//
+// [proof]
+// claim = "the first of the hits that are nearest along x is kept, with all its data, at full width"
+// modules = ["z_buffer"]
+// induction = 2
+// reach = 6
+// quick = ["one-unit"]
+// designs = ["one-unit materials patterns fraction_bits=8"]
+// [faults]
+// "vga240-u1-r12-m1-f0t-d3-c8" = ["z_buffer.nearest edge", "z_buffer.nearest short",
+//   "z_buffer.found_point_word late"]
 
 module nearest_depth #(parameter POSITION_BITS = 9, parameter LOOK_BITS = 24, parameter MATERIALS = 0) (
     input clk, input reset, input write, input hit, input [POSITION_BITS-1:0] depth, input [3*POSITION_BITS-1:0] point,

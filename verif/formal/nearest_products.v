@@ -5,6 +5,23 @@
 //
 // Assumed about products is the lemma kept-is-nearest. Assumed about the engine: a hit's denominator is not 0, and
 // nothing is offered in the cycle of a reset. All other inputs may change in every cycle.
+//
+// [proof]
+// claim = "the first of the nearest hits is kept, in the order of cross-multiplication, at full width"
+// modules = ["nearest_hit"]
+// any_product = true
+// parameters = { DISTANCE_BITS = "EYE_BITS - 1" }
+// induction = 2
+// reach = 6
+// quick = ["exact one-unit reflections=0"]
+// designs = [
+//   "exact one-unit turn=0,1 reflections=0,1,2,3,4", "exact one-unit turn materials patterns reflections=0,1,2,3,4",
+// ]
+// [faults]
+// "exact-vga240-u1-r12-m1-c8" = ["nearest_hit.nearest_product edge", "nearest_hit.found_slope as denominator",
+//   "nearest_hit.found_slope short"]
+// "exact-vga240-u1-r12-m2-c8-turn-materials-patterns" = ["nearest_hit.nearer and found",
+//   "nearest_hit.found_at_mirror as at_mirror"]
 
 module nearest_products #(
     parameter SURFACE_BITS = 35, parameter SLOPE_BITS = 8, parameter DISTANCE_BITS = 10

@@ -11,6 +11,40 @@
 // REFLECTIONS reflections. As the units guarantee: if no ray is alive at the end of one pass, none is at the end of the
 // next one, which is not traced. Otherwise any ray may be alive, and run towards any plane, in any cycle. Reset may
 // come at any time, and registers are arbitrary before the first one.
+//
+// [proof]
+// claim = """each rectangle that a ray may hit is visited once and in order, and ends early if behind all; \
+// reflections + 1 rays, done within the budget's cycles"""
+// modules = ["ray_control if SEED", "exact_control if not SEED", "ray_sequencer", "rect_sequencer"]
+// induction = 1
+// reach = "RUN_BOUND + 2 if RECTANGLES == 2 and REFLECTIONS == 1 and STEPS < 5 else 0"
+// quick = [
+//   "tiny rectangles=2 reflections=1 culling=1,0 steps=9,8,7,6,5,4,3",
+//   "tiny rectangles=4 reflections=2 culling=1 steps=9,8,7,6,5,4,3",
+//   "exact tiny rectangles=2 reflections=1 culling=1", "exact tiny rectangles=4 reflections=2 culling=1",
+// ]
+// designs = [
+//   "tiny rectangles=2,3,4 reflections=0,1,2 culling=1,0 steps=9,8,7,6,5,4,3",
+//   "tiny two reflections=3,4 culling=1,0 steps=3,9",
+//   "one-unit divider_bits=1",  # the control of the default design
+//   "exact tiny rectangles=2,3,4 reflections=0,1,2,3,4 culling=1", "exact one-unit", "exact one-unit reflections=4",
+// ]
+// [parameters]
+// STEPS = "SLOT_CYCLES"
+// RESULT_LATENCY = "PASS_LATENCY"
+// RUN_BOUND = "GROUP_CYCLES - 2"  # done comes two cycles before the next group may start
+// [faults]
+// "tiny48-u2-r2-m1-f0t-d3-c8" = ["rect_sequencer.others as candidates", "rect_sequencer.fetched unless upcoming",
+//   "rect_sequencer.lowest inverted", "ray_sequencer.picture_reflections 1", "ray_sequencer.done 0 in 40",
+//   "ray_sequencer.passed 1", "ray_sequencer.fate_may_hit 1", "ray_sequencer.rects_usable and fate_may_hit",
+//   "ray_sequencer.fate_any_alive 0", "ray_sequencer.fate_any_alive 1", "ray_sequencer.picture_reflections 0",
+//   "ray_control.steps_store_quotient as in_flight[3]", "ray_control.dividing_word as rects_rect_word"]
+// "tiny48-u2-r2-m1-f3t-d3-c8" = ["ray_sequencer.in_flight[2] as in_flight[1]",
+//   "ray_sequencer.rect_sequencer_i.early_out 0", "ray_control.early_out or in_flight[0]",
+//   "ray_control.early_out late", "ray_control.none_towards 1", "ray_control.none_towards 0"]
+// "tiny48-u2-r2-m1-f3t-d3-c8-k0" = ["ray_control.ray_sequencer_i.early_out as in_flight[1]"]
+// "exact-tiny48-u2-r2-m1-c8-k1" = ["exact_control.steps_write_z_buf as in_flight[1]",
+//   "exact_control.second_word as first_word", "ray_sequencer.passed 1", "rect_sequencer.slot 1"]
 
 module ray_order #(
     parameter RECTANGLES = 2, parameter INDEX_BITS = 1, parameter STEPS = 9, parameter SLOT_BITS = 4,

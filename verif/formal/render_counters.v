@@ -5,6 +5,26 @@
 //
 // So nothing is assumed about the video generator's strobes. Assumed otherwise: one cycle of reset at first, and `run`
 // changes only in the cycle after StartScreen or reset, as the scene's live words do.
+//
+// [proof]
+// claim = "the renderer's counters stay in range, and each group is written once, into its row"
+// modules = [
+//   "ray_caster_renderer", "clock_gate", "ray_caster", "ray_control", "ray_sequencer", "rect_sequencer",
+//   "ray_unit", "line_buffer", "video_generator", "group_culler if CULLING",
+// ]
+// cut = ["ray_unit", "line_buffer", "video_generator", "group_culler if CULLING"]
+// parameters = { COLUMN_BITS = "OFFSET_BITS", OFFSET_BITS = "GROUP_BITS" }
+// induction = 1
+// reach = "20 if RECTANGLES == 2 else 0"
+// quick = ["engine=seed", "tiny two"]
+// designs = [
+//   "rows=200 reflections=2", "reflections=4", "tiny two culling=0", "units=16 rectangles=4",
+//   "rows=60 units=16 two reflections=0",
+// ]
+// [faults]
+// "vga60-u16-r2-m0-f0t-d1-c8" = ["ray_caster_renderer.enable or rendering in 100",
+//   "ray_caster_renderer.place_row edge in 70", "ray_caster_renderer.restart unless scan_start_row",
+//   "ray_caster_renderer.read_offset edge in 90", "ray_caster_renderer.progress_underrun unless done"]
 
 module render_counters #(
     parameter RECTANGLES = 2, parameter INDEX_BITS = 1, parameter COLOUR_BITS = 8, parameter GROUPS = 10,

@@ -8,6 +8,26 @@
 //
 // For the culler (ADDERS) a bound may be one unit outside the world, and a product replaces each multiplier made of
 // adders: its operands are proved here, its digits are tested.
+//
+// [proof]
+// claim = """each rectangle is loaded once, in order, with its distances and their products with the slope, at \
+// full width"""
+// modules = ["rect_setup"]
+// any_product = true
+// induction = 5
+// reach = 10
+// quick = ["beam", "exact culling=1"]
+// designs = ["beam two pairs turn"]
+// [parameters]  # the culler has multipliers made of adders, wider bounds, and no looks
+// ADDERS = "CULLING"
+// BOUND_BITS = "WIDE_BITS if CULLING else COORDINATE_BITS"
+// TO_BOUND_BITS = "WIDE_BITS if CULLING else DISTANCE_BITS"
+// BASIS_BITS = "CAMERA_BITS - 3 * COORDINATE_BITS"
+// SLOPE_BITS = "SLOPE_BITS + 1"
+// [faults]
+// "beam-vga240-s2-u1-r12-m1-c8" = ["rect_setup.number_2 as number_1", "rect_setup.number edge in 24",
+//   "rect_setup.slope_a_2 as slope_q_2", "rect_setup.distance negated", "rect_setup.to_high_p signed-short"]
+// "exact-vga240-u4-r12-m1-c8-k1" = ["rect_setup.to_low_q_2 as to_high_q_2", "rect_setup.slope_p_2 as slope_q_2"]
 
 module array_multiplier (
     input signed [9:0] multiplicand, input signed [8:0] multiplier, output signed [17:0] product

@@ -9,6 +9,22 @@
 // REFLECTIONS reflections. As the units guarantee: if no ray is alive at the end of one pass, none is at the end of the
 // next one, which is not traced. Otherwise any ray may be alive, and any hit point in question, in any cycle. Reset may
 // come at any time, and registers are arbitrary before the first one.
+//
+// [proof]
+// claim = """a pass of rays and a shadow pass each test every rectangle that they may hit once and in order; a shadow \
+// pass follows if a hit point is in question, ends early only if none is, and none of its tests reaches a z buffer"""
+// modules = ["exact_control", "ray_sequencer", "rect_sequencer", "shadow_sequencer"]
+// induction = 1
+// reach = "RUN_BOUND + 2 if RECTANGLES == 2 and REFLECTIONS == 1 else 0"
+// quick = ["exact tiny light rectangles=2 reflections=1"]
+// designs = [
+//   "exact tiny light rectangles=2,3,4 reflections=0,1,2,3,4", "exact one-unit light reflections=1,4",
+// ]
+// parameters = { RUN_BOUND = "GROUP_CYCLES - 2" }  # done comes two cycles before the next group may start
+// [faults]
+// "exact-tiny48-u2-r2-m1-c8-light" = ["ray_sequencer.shadow_pass_awaited 0", "shadow_sequencer.any_in_question 1",
+//   "ray_sequencer.shadow_pass_stop 0 in 20", "shadow_sequencer.aimed late", "ray_sequencer.shadow_pass_start 0 in 20",
+//   "ray_sequencer.stop as reset_ray_caster in 20", "exact_control.from_light 0 in 24"]
 
 module shadow_order #(
     parameter RECTANGLES = 2, parameter INDEX_BITS = 1, parameter REFLECTIONS = 1, parameter REFLECTION_BITS = 3,

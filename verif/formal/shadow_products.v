@@ -6,6 +6,24 @@
 // Assumptions: the cycles of aim follow each other, the ray and the light are constant in them and in the cycle before,
 // and the hit is constant in them, as shadow-wiring proves; S is within the world's size times e, by the lemma
 // shadow-slope-in-range; and a rectangle that is hit is no further from the light than the world is wide.
+//
+// [proof]
+// claim = """the ray from the light leads to the hit point, whose shadow is decided as the definition says, at \
+// full width"""
+// modules = ["shadow_ray", "hit_component", "shadow_register"]
+// any_product = true
+// induction = 2
+// reach = 10
+// quick = ["exact one-unit light reflections=0", "exact one-unit light turn materials patterns reflections=4"]
+// designs = [
+//   "exact one-unit light reflections=0,1,2,3,4",
+//   "exact one-unit light turn materials patterns reflections=0,1,2,3,4",
+// ]
+// [faults]
+// "exact-vga240-u1-r12-m0-c8-light" = ["shadow_ray.difference signed-short",
+//   "shadow_ray.camera_light_z as camera_light_y", "shadow_ray.back_2 0", "shadow_ray.negated as inverse",
+//   "shadow_ray.found_surface_position edge", "shadow_register.reached edge", "shadow_register.shaded and hit",
+//   "shadow_register.reached short"]
 
 module shadow_products #(
     parameter COORDINATE_BITS = 9, parameter LOOK_BITS = 24, parameter SLOPE_BITS = 8, parameter EYE_BITS = 11,

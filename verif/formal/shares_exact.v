@@ -8,6 +8,19 @@
 // Assumed, as the control guarantees: rays come one after the other, each with one addition, and all except the last
 // one store a reflected ray in the same cycle; the picture's reflections are constant meanwhile. Assumed, as the
 // registers guarantee: a mirror is 0 to 4 quarters, and a picture has no more reflections than the design.
+//
+// [proof]
+// claim = "a pixel is the golden model's blend of what its rays saw one after the other, at full width"
+// modules = ["colour_combiner", "colour_share", "colour_sum"]
+// induction = 1
+// reach = "REFLECTIONS + 5"
+// quick = ["exact one-unit reflections=1", "exact one-unit reflections=2 materials"]
+// designs = ["exact one-unit reflections=1,2,3,4 materials=0,1"]
+// [faults]
+// "exact-vga240-u1-r12-m2-c8-materials" = ["colour_share.some as half", "colour_share.found 1",
+//   "colour_share.left short", "colour_sum.weighted as at_even"]
+// "exact-vga240-u1-r12-m4-c8-materials" = ["colour_share.some as half", "colour_sum.share short"]
+// "exact-vga240-u1-r12-m1-c8" = ["colour_share.steps_store_ray 1", "colour_combiner.missed 0"]
 
 module shares_exact #(
     parameter MATERIALS = 0, parameter REFLECTIONS = 1, parameter COLOUR_BITS = 8, parameter SHARE_BITS = 2

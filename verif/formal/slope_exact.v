@@ -5,6 +5,20 @@
 //
 // Assumed, as the renderer guarantees: the pixel is on the screen, and its place and the basis are constant from the
 // cycle before the ray is loaded.
+//
+// [proof]
+// claim = "a pixel's slope in the exact engine has the definition's sign and magnitude, and fits, at full width"
+// modules = ["turned_generator if TURN", "slope_component if TURN", "ray_generator if not TURN", "magnitude"]
+// any_product = "TURN"
+// parameters = { COLUMN_BITS = "(COLUMNS + UNITS).bit_length() + 1" }
+// induction = 2
+// reach = 4
+// quick = ["exact turn"]
+// designs = ["exact", "exact rows=200", "exact turn reflections=2"]
+// [faults]
+// "exact-vga240-u4-r12-m1-c8" = ["ray_generator.place_row increased", "ray_generator.dy edge"]
+// "exact-vga240-u4-r12-m1-c8-turn" = ["slope_component.component_size short",
+//   "turned_generator.camera_up_y as camera_up_x", "slope_component.upward negated"]
 
 module slope_exact #(
     parameter TURN = 0, parameter SLOPE_BITS = 8, parameter COORDINATE_BITS = 9, parameter BASIS_BITS = 10,

@@ -5,6 +5,19 @@
 //
 // Assumed, as the engine guarantees: bounds in order, an axis of 0, 1 or 2, an eye no further away than REFLECTIONS
 // mirrors can move it, and a mirror ahead of the eye. The ray and the rectangle may change in every cycle.
+//
+// [proof]
+// claim = "a rectangle is hit if the quotient's point is within it and beyond the mirror, or in a corner with it"
+// modules = ["rect_tester", "extent_tester"]
+// induction = 4
+// reach = 5
+// label = "{COORDINATE_BITS} bits, {REFLECTIONS} mirrors"
+// quick = ["alone=tester COORDINATE_BITS=1 REFLECTIONS=2", "alone=tester COORDINATE_BITS=2 REFLECTIONS=1"]
+// designs = ["alone=tester COORDINATE_BITS=2 REFLECTIONS=2", "alone=tester COORDINATE_BITS=3,4 REFLECTIONS=1"]
+// [faults]
+// "2 bits, 1 mirrors" = ["rect_tester.seen_1_n edge", "extent_tester.clips and passed_1",
+//   "extent_tester.way_to_far_2 edge"]
+// "1 bits, 2 mirrors" = ["rect_tester.seen_2_met 0"]
 
 module tester_exact #(
     parameter COORDINATE_BITS = 3, parameter SLOPE_BITS = 3, parameter EYE_BITS = 5, parameter REFLECTIONS = 1
@@ -73,15 +86,7 @@ wire [WIDE-1:0] way_u = slope_u * n, way_v = slope_v * n;
 wire signed [WIDE-1:0] whole_u = ahead ? way_u / e : 0, whole_v = ahead ? way_v / e : 0;
 wire more_u = ahead && way_u % e != 0, more_v = ahead && way_v % e != 0;
 
-// P is base + more, or base - more, with 0 <= more < 1.
-function within(input signed [WIDE-1:0] base, input more, input negative, input signed [WIDE-1:0] low,
-                input signed [WIDE-1:0] high);
-    if (negative) within = (more ? base > low : base >= low) && base <= high;
-    else within = base >= low && (more ? base < high : base <= high);
-endfunction
-function beyond(input signed [WIDE-1:0] base, input more, input negative, input signed [WIDE-1:0] place);
-    beyond = negative ? base < place || base == place && more : base > place || base == place && more;
-endfunction
+`include "quotient_point.v"
 wire signed [WIDE-1:0] base_u = back_u ? eye_u - whole_u : eye_u + whole_u;
 wire signed [WIDE-1:0] base_v = back_v ? eye_v - whole_v : eye_v + whole_v;
 wire signed [WIDE-1:0] low_u = {1'b0, u_low}, high_u = {1'b0, u_high}, low_v = {1'b0, v_low}, high_v = {1'b0, v_high};
@@ -94,23 +99,5 @@ wire defined = ahead && within(base_u, more_u, back_u, low_u, high_u) && within(
 // The result comes three cycles later.
 reg [2:0] valid = 3'b000, hits, in_mirrors;
 reg [WIDE-1:0] n_1, n_2, n_3, e_1, e_2, e_3;
-always @(posedge clk) begin
-    valid <= {valid, started};
-    hits <= {hits, defined};
-    in_mirrors <= {in_mirrors, in_mirror};
-    n_1 <= n; n_2 <= n_1; n_3 <= n_2;
-    e_1 <= e; e_2 <= e_1; e_3 <= e_2;
-end
-always @* if (valid[2]) begin
-    assert (hit == hits[2]);
-    if (hit) assert (numerator == n_3 && denominator == e_3);
-    if (hit) assert (at_mirror == in_mirrors[2]);
-end
-
-always @* cover (valid[2] && hit);
-generate
-    if (REFLECTIONS > 1) begin: corners
-        always @* cover (valid[2] && hit && at_mirror);
-    end
-endgenerate
+`include "tester_result.v"
 endmodule

@@ -6,6 +6,24 @@
 // All differences are computed here in numbers that are wide enough; those that are multiplied are asserted to fit the
 // engine's unsigned operands. Assumed, as the engine guarantees: an axis of 0, 1 or 2, and an eye no further away than
 // REFLECTIONS mirrors can move it. The ray, the rectangle and the mirror may change in every cycle.
+//
+// [proof]
+// claim = "a rectangle is hit if the cross-multiplied definition says so, and no distance overflows, at full width"
+// modules = ["rect_tester", "extent_tester"]
+// any_product = true
+// parameters = { SLOPE_BITS = "LIGHT_BITS if LIGHT else SLOPE_BITS" }
+// induction = 4
+// reach = 5
+// designs = [
+//   "exact one-unit turn=0,1 reflections=0,1,2,3,4", "exact one-unit turn materials patterns reflections=0,1,2,3,4",
+//   "exact one-unit light reflections=0,1,2,3,4",
+//   "exact one-unit light turn materials patterns reflections=0,1,2,3,4",
+// ]
+// [faults]
+// "exact-vga240-u1-r12-m1-c8" = ["rect_tester.extent_tester_0_i.slope as slope_v", "extent_tester.way_to_far short",
+//   "extent_tester.way_to_near_2 edge", "extent_tester.turned_eye increased", "extent_tester.to_far_1 short"]
+// "exact-vga240-u1-r12-m2-c8-turn" = ["rect_tester.by_axis_12_i.on_y as mirror_met_x",
+//   "extent_tester.to_near_1 edge"]
 
 module tester_products #(
     parameter COORDINATE_BITS = 9, parameter LOOK_BITS = 24, parameter SLOPE_BITS = 8, parameter EYE_BITS = 11,
@@ -94,23 +112,5 @@ wire defined = ahead && within_u && within_v && (beyond || in_mirror && !met[axi
 reg [2:0] valid = 3'b000, hits, in_mirrors;
 reg [DISTANCE_BITS-1:0] n_1, n_2, n_3;
 reg [SLOPE_BITS-1:0] e_1, e_2, e_3;
-always @(posedge clk) begin
-    valid <= {valid, started};
-    hits <= {hits, defined};
-    in_mirrors <= {in_mirrors, in_mirror};
-    n_1 <= n; n_2 <= n_1; n_3 <= n_2;
-    e_1 <= e; e_2 <= e_1; e_3 <= e_2;
-end
-always @* if (valid[2]) begin
-    assert (hit == hits[2]);
-    if (hit) assert (numerator == n_3 && denominator == e_3);
-    if (hit) assert (at_mirror == in_mirrors[2]);
-end
-
-always @* cover (valid[2] && hit);
-generate
-    if (REFLECTIONS > 1) begin: corners
-        always @* cover (valid[2] && hit && at_mirror);
-    end
-endgenerate
+`include "tester_result.v"
 endmodule

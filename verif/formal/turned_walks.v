@@ -6,6 +6,19 @@
 //
 // Assumed about products are the lemma next-column, and that a product with 0 is 0. Assumed about a step, as row-setup
 // proves: it adds a distance times the growth of the slope. By slope-in-range no slope along a row is too steep.
+//
+// [proof]
+// claim = "with a turning camera, a rectangle's registers are its distances times the slope, at full width"
+// modules = ["rect_walker", "slope_walker"]
+// any_product = true
+// parameters = { SLOPE_BITS = "SLOPE_BITS + 1" }
+// induction = 1
+// reach = 5
+// quick = ["beam two turn"]
+// designs = ["beam two pairs turn"]
+// [faults]
+// "beam-vga240-s2-u1-r2-m1-c8-turn" = ["rect_walker.low_q signed-short", "rect_walker.growth_way_q negated",
+//   "slope_walker.slope_z late"]
 
 module turned_walks #(
     parameter WALK_BITS = 29, parameter DISTANCE_BITS = 10, parameter SLOPE_BITS = 20, parameter STEEPEST = 400000

@@ -8,6 +8,29 @@
 // slope-exact prove that outputs of blocks are right. Assumed: a reset first, an axis of 0, 1 or 2, and a slope that is
 // constant from the cycle after its step, as slope-exact proves for a constant pixel. All other inputs may change in
 // every cycle.
+//
+// [proof]
+// claim = "each block of a unit gets the inputs that its own proof assumes, and the nearest hit, at full width"
+// modules = [
+//   "exact_unit", "exact_control", "ray_sequencer", "rect_sequencer", "rect_tester", "nearest_hit", "eye_register",
+//   "colour_combiner", "colour_share", "colour_sum", "turned_generator if TURN", "ray_generator if not TURN",
+//   "cell_finder if PATTERNS", "divider_step if PATTERNS", "pattern_colour if PATTERNS",
+// ]
+// cut = ["turned_generator if TURN", "ray_generator if not TURN"]
+// any_product = true
+// induction = "PASS_LATENCY"
+// reach = "2 * PASS_LATENCY + 9"
+// quick = ["exact one-unit"]
+// designs = ["exact one-unit reflections=2", "exact one-unit turn materials patterns reflections=1,4"]
+// [faults]
+// "exact-vga240-u1-r12-m1-c8" = ["exact_unit.rect_tester_i.eye_x as eye_y",
+//   "exact_unit.rect_tester_i.signs_word as initial_signs_word",
+//   "exact_unit.eye_register_i.found_surface_word as offered_word",
+//   "exact_unit.eye_register_i.found_distance as numerator",
+//   "exact_unit.colour_combiner_i.found_colour as offered_word", "exact_control.second_word as first_word"]
+// "exact-vga240-u1-r12-m2-c8" = ["exact_unit.eye_register_i.found_at_mirror as at_mirror"]
+// "exact-vga240-u1-r12-m1-c8-turn-materials-patterns" = ["exact_control.steps_store_quotient late in 18",
+//   "exact_unit.cell_finder_i.found_slope as denominator in 18"]
 
 module unit_wiring #(
     parameter PATTERNS = 0, parameter REFLECTIONS = 1, parameter RECTANGLES = 2,
@@ -22,71 +45,13 @@ localparam SURFACE_BITS = 2 + COORDINATE_BITS + LOOK_BITS, RECT_BITS = SURFACE_B
 localparam DISTANCE_BITS = EYE_BITS - 1, WAY_BITS = DISTANCE_BITS + SLOPE_BITS, WIDE = EYE_BITS + 3;
 localparam CORNERS = REFLECTIONS > 1, MIRROR_BITS = 3 + DISTANCE_BITS + (CORNERS ? 3 : 0), TRAVEL = PATTERNS ? 9 : 3;
 
-wire [INDEX_BITS-1:0] index;
-wire fetch, done, screen_to_ray, initial_ray, find, reset_nearest, write, reset_colour, add, reflect;
-wire [SURFACE_BITS-1:0] offered;
-generate
-    if (PATTERNS) begin: design
-        wire load, store, alive;
-        exact_control control (
-            .clk(clk), .reset_ray_caster(reset), .enable(enable), .done(done), .picture_reflections(reflections),
-            .rects_usable(usable), .rects_index(index), .rects_fetch(fetch), .rects_rect_word(rect),
-            .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray), .steps_find_intersection(find),
-            .steps_load_divider(load), .steps_store_quotient(store), .steps_reset_z_buf(reset_nearest),
-            .steps_write_z_buf(write), .steps_reset_colour(reset_colour), .steps_add_colour(add),
-            .steps_store_ray(reflect), .fate_any_alive(alive || other_alive), .fate_may_hit({RECTANGLES{1'b1}}),
-            .offered_word(offered)
-        );
-        exact_unit unit (
-            .clk(clk), .column_base(1'b0), .steps_screen_to_ray(screen_to_ray), .steps_find_intersection(find),
-            .steps_load_divider(load), .steps_store_quotient(store), .steps_reset_z_buf(reset_nearest),
-            .steps_write_z_buf(write), .steps_reset_colour(reset_colour), .steps_add_colour(add),
-            .steps_store_ray(reflect), .place_row(row), .place_column_offset(offset), .camera_word(camera),
-            .rect_word(rect), .offered_word(offered), .picture_background(background), .fate_alive(alive)
-        );
-    end
-    else begin: design
-        exact_control control (
-            .clk(clk), .reset_ray_caster(reset), .enable(enable), .done(done), .picture_reflections(reflections),
-            .rects_usable(usable), .rects_index(index), .rects_fetch(fetch), .rects_rect_word(rect),
-            .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray), .steps_find_intersection(find),
-            .steps_reset_z_buf(reset_nearest), .steps_write_z_buf(write), .steps_reset_colour(reset_colour),
-            .steps_add_colour(add), .steps_store_ray(reflect), .fate_any_alive(1'b1),
-            .fate_may_hit({RECTANGLES{1'b1}}), .offered_word(offered)
-        );
-        exact_unit unit (
-            .clk(clk), .column_base(1'b0), .steps_screen_to_ray(screen_to_ray), .steps_find_intersection(find),
-            .steps_reset_z_buf(reset_nearest), .steps_write_z_buf(write), .steps_reset_colour(reset_colour),
-            .steps_add_colour(add), .steps_store_ray(reflect), .place_row(row), .place_column_offset(offset),
-            .camera_word(camera), .rect_word(rect), .offered_word(offered), .picture_background(background)
-        );
-    end
-endgenerate
+wire [RECTANGLES-1:0] may_hit = {RECTANGLES{1'b1}};
+`include "exact_unit_ports.v"
 always @* assume (rect[RECT_BITS-1 -: 2] < 3);
 
-// The generator is cut: any slope that stays constant.
-(* hierconn *) wire [2:0] \design.unit.initial_signs_word ;
-(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.slope_dx , \design.unit.slope_dy , \design.unit.slope_dz ;
-wire [3*SLOPE_BITS+2:0] generated = {\design.unit.initial_signs_word , \design.unit.slope_dx , \design.unit.slope_dy ,
-                                     \design.unit.slope_dz };
-wire [3*SLOPE_BITS-1:0] slope = generated[3*SLOPE_BITS-1:0];
-reg known = 1'b0, loaded = 1'b0, settled = 1'b0, found_known = 1'b0;
-reg [3*SLOPE_BITS+2:0] last_generated;
-always @(posedge clk) begin
-    known <= known || reset;
-    loaded <= loaded || screen_to_ray;
-    found_known <= found_known || reset_nearest;
-    settled <= loaded && !screen_to_ray;
-    last_generated <= generated;
-end
-always @* if (settled) assume (generated == last_generated);
-
-// The control's states: 1 generates a slope, 2 traces, 3 blends, 4 is done.
-(* hierconn *) wire [2:0] \design.control.ray_sequencer_i.state ;
-wire [2:0] state = \design.control.ray_sequencer_i.state ;
+reg found_known = 1'b0;
+always @(posedge clk) found_known <= found_known || reset_nearest;
 always @* begin
-    assume (known || reset);
-    if (known && state > 1) assert (loaded);
     if (loaded) assert (found_known);
     if (find) assert (state == 2);
     if (screen_to_ray) assert (state == 1);

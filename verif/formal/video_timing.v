@@ -7,6 +7,21 @@
 // are functions of the reference position, which visits every place of the frame once; in addition, start_row is
 // counted to come ROWS times per frame. The invariants at the end tie the generator's registers to the reference, which
 // makes the proof inductive at any size of screen.
+//
+// [proof]
+// claim = "sync, blanking and strobes come exactly at the standard's counts, for any inputs"
+// modules = ["video_generator", "pixel_clock if LEAD"]
+// parameters = { COLOUR_BITS = "COLOUR_BITS * PIXELS" }
+// induction = 1
+// quick = [
+//   "vga240: one-unit", "vga200: one-unit rows=200", "tiny48: one-unit screen=tiny", "toy: alone=video",
+//   "beam tiny48: beam two screen=tiny scale=1", "beam 1080, 2 pixels: beam two pairs",
+// ]
+// [faults]
+// "toy" = ["video_generator.hs late in 30", "video_generator.vs late in 60", "video_generator.x edge in 40",
+//   "video_generator.vga_hs as pixel_red", "video_generator.vga_b as pixel_blue", "video_generator.vga_r late",
+//   "video_generator.scan_start_screen late in 80", "video_generator.line_repeat 0 in 200"]
+// "beam 1080, 2 pixels" = ["video_generator.in_columns late in 130"]
 
 module video_timing #(
     parameter H_VISIBLE = 640, parameter H_FRONT = 16, parameter H_SYNC = 96, parameter H_BACK = 48,

@@ -6,6 +6,22 @@
 // Assumed about products is the lemma next-column. Assumed about a row's start, as row-setup proves: products with the
 // first column's slope, and the growth per column. Assumed, as the lane guarantees: the growth is constant along the
 // row, and no step comes before the start or after the last column.
+//
+// [proof]
+// claim = "without a turning camera, a rectangle's registers are its distances times the slope, at full width"
+// modules = ["rect_walker", "slope_walker", "lane_start if PIXELS > 1"]
+// any_product = true
+// parameters = { SLOPE_BITS = "SLOPE_BITS + 1" }
+// induction = 1
+// reach = 6
+// label = "{DESIGN}{' lane %d' % LANE if PIXELS > 1 else ''}"
+// quick = ["beam two LANE=0"]
+// designs = ["beam two pairs LANE=0,1"]
+// [faults]
+// "beam-vga240-s2-u1-r2-m1-c8" = ["rect_walker.high_q signed-short", "rect_walker.growth_low_p short",
+//   "rect_walker.step_bounds as step_way", "slope_walker.slope_y negated"]
+// "beam-vga180-s6-u2-r2-m1-c8 lane 1" = ["lane_start.growth_low_q 0"]
+// "beam-vga180-s6-u2-r2-m1-c8 lane 0" = ["lane_start.first_start_word 0"]
 
 module walked_products #(
     parameter LANE = 0, parameter PIXELS = 1, parameter RECTANGLES = 2, parameter WALK_BITS = 19,

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: MIT
+"""Blocks that are converted alone for a proof, at widths that no whole design has, or next to what replaces them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from raycaster.buses import BUSES
+from raycaster.configuration import Configuration, configure
+from raycaster.fit.fixing import fixed_rectangle
+from raycaster.fixed import FixedScene
+from raycaster.hdl.signals import bit, reset_signal, unsigned
+from raycaster.program import scene_words
+from raycaster.registers import address_bits, register_map
+from raycaster.rtl.beam.fold_tester import fold_tester
+from raycaster.rtl.beam.ray_fold import ray_fold
+from raycaster.rtl.beam.ray_tester import ray_tester
+from raycaster.rtl.bus.avalon_host import avalon_host
+from raycaster.rtl.bus.buses import BRIDGES
+from raycaster.rtl.common.interfaces import Access, AvalonPort, Direction, Eye, Rects, Scan, SceneBus, Slope, Steps, Vga
+from raycaster.rtl.common.records import (
+    Candidate,
+    Facet,
+    Fold,
+    Mirror,
+    Pixel,
+    Rect,
+    Reflector,
+    Signs,
+    Turn,
+    Walk,
+    rect_of,
+)
+from raycaster.rtl.common.widths import LANES, WORD_BITS, index_bits
+from raycaster.rtl.exact.rect_tester import rect_tester
+from raycaster.rtl.scene.rect_mem import rect_mem
+from raycaster.rtl.scene.rect_rom import rect_rom
+from raycaster.rtl.scene.written_rect import CORNER, surface_mask
+from raycaster.rtl.video.video_generator import video_generator
+from raycaster.scene import Camera, Rectangle, Scene
+from raycaster.screens import Screen, Span
+
+
+class Alone:
+    """Blocks that are converted alone."""
+
+    def facts(self) -> dict[str, int]:
+        """Return the parameters of proofs that differ from those of a whole design."""
+        return {}
+
+    def blocks(self) -> Iterator[Any]:
+        """Elaborate the blocks."""
+        raise NotImplementedError
+
+
+TOY_SCREEN = Screen(3, 2, 1, 3, Span(9, 1, 2, 1, active_high=True), Span(6, 1, 1, 3, active_high=True))
+"""A screen with tripled pixels and a frame that is short enough to be run completely."""
+
+
+@dataclass(frozen=True)
+class VideoAlone(Alone):
+    """`video_generator` for a screen that no design has."""
+
+    screen: Screen = TOY_SCREEN
+
+    def blocks(self) -> Iterator[Any]:
+        """Elaborate the video generator."""
+        yield video_generator(bit(), reset_signal(), scan=Scan(), pixel=Pixel(8), vga=Vga(8), screen=self.screen)
+
+
+@dataclass(frozen=True)
+class TesterAlone(Alone):
+    """`rect_tester` with narrow coordinates, slopes as wide, and eyes after this many mirrors."""
+
+    coordinate: int
+    reflections: int
+
+    @property
+    def _eye(self) -> int:
+        return (((1 << self.coordinate) - 1) * (self.reflections + 1)).bit_length() + 1
+
+    def facts(self) -> dict[str, int]:
+        """Return the widths of slopes and eyes."""
+        return {"SLOPE_BITS": self.coordinate, "EYE_BITS": self._eye}
+
+    def blocks(self) -> Iterator[Any]:
+        """Elaborate the test."""
+        distance = self._eye - 1
+        yield rect_tester(
+            clk=bit(), steps=Steps(), rect=Rect(self.coordinate), eye=Eye(self._eye), signs=Signs(),
+            slope=Slope(self.coordinate), mirror=Mirror(distance, self.reflections > 1), hit=bit(), at_mirror=bit(),
+            numerator=unsigned(distance), denominator=unsigned(self.coordinate),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class FoldAlone(Alone):
+    """`ray_fold` and both testers with narrow coordinates and slopes; `staged` as in `engines.beam.is_staged`."""
+
+    coordinate: int
+    slope: int
+    mirrors: int
+    staged: bool
+
+    def _products(self, most: int) -> int:
+        return (most * ((1 << self.slope) - 1)).bit_length() + 1
+
+    def facts(self) -> dict[str, int]:
+        """Return the widths of products and hits."""
+        most = (1 << self.coordinate) - 1
+        return {
+            "WALK_BITS": self._products(most),
+            "FOLD_BITS": self._products(most + (self.mirrors << self.coordinate + 1)),
+            "NUMERATOR_BITS": (most * (self.mirrors + 1)).bit_length(),
+        }
+
+    def blocks(self) -> Iterator[Any]:
+        """Elaborate the fold and both testers."""
+        distance, turn, widths = self.coordinate + 1, self.coordinate + 2, self.facts()
+        product = widths["WALK_BITS"]
+        fold = Fold(widths["FOLD_BITS"], product, turn, distance)
+        yield ray_fold(
+            bit(), before=Turn(turn), last=Reflector(distance), slope=Direction(self.slope + 1), fold=fold
+        )  # fmt: skip
+        for tester in (ray_tester, partial(fold_tester, fold=fold)):
+            yield tester(
+                bit(), step_way=bit(), step_bounds=bit(), step_slope=bit(), facet=Facet(product, distance),
+                walk=Walk(product), signs=Signs(), slope=Slope(self.slope), index=bit(),
+                hit=Candidate(widths["NUMERATOR_BITS"], self.slope, 1), staged=self.staged,
+            )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class BridgeAlone(Alone):
+    """`avalon_host`, which has no bus, or the bridge from a bus, named as in a configuration."""
+
+    bus: str
+    address: int
+
+    def blocks(self) -> Iterator[Any]:
+        """Elaborate the host or the bridge."""
+        agent = AvalonPort(self.address)
+        if not self.bus:
+            yield avalon_host(
+                bit(), reset_signal(), access=Access(), strobe=unsigned(LANES), address=unsigned(self.address),
+                data=unsigned(WORD_BITS), avm_m0=agent,
+            )  # fmt: skip
+            return
+        bridge = BRIDGES[self.bus]
+        ports = {BUSES[self.bus].port: bridge.interface(self.address)}
+        yield bridge.block(bit(), reset_signal(), avm_m0=agent, **ports)
+
+
+FIXED_SCENE = Scene(
+    camera=Camera(position=(20, 250, 100)),
+    rect=(
+        Rectangle(corners=((0, 100, 0), (511, 420, 0)), colour=(200, 200, 180)),
+        Rectangle(corners=((300, 400, 180), (300, 60, 0)), colour=(80, 160, 255), mirror=1.0),
+        Rectangle(corners=((200, 270, 20), (130, 270, 140)), colour=(255, 64, 32), mirror=0.25),
+    ),
+)
+"""A floor, a wall and a post; corners in any order."""
+
+
+@dataclass(frozen=True)
+class TableAlone(Alone):
+    """The memory of a general design, and the table that replaces it for a fixed scene.
+
+    Attributes:
+        engine: name of the designs' engine.
+        alike: True if the rectangles differ in a single colour, False if they are those of `FIXED_SCENE`.
+    """
+
+    engine: str
+    alike: bool
+
+    def _designs(self) -> tuple[Scene, Configuration, Configuration]:
+        rect = FIXED_SCENE.rect
+        if self.alike:
+            rect = (rect[1], rect[1], rect[1].model_copy(update={"colour": (1, 2, 3)}))
+        options = {"engine": self.engine, "materials": not self.alike, "allow_underrun": True}
+        every = (1 << len(rect)) - 1
+        fixed = configure(fixed=FixedScene(tuple(map(fixed_rectangle, rect)), (every, every)), **options)
+        scene = FIXED_SCENE.model_copy(update={"rect": rect})
+        return scene, configure(rectangles=len(rect), **options), fixed
+
+    def facts(self) -> dict[str, int]:
+        """Return the scene's words, and the masks that are kept of them."""
+        scene, general, fixed = self._designs()
+        words, registers = dict(scene_words(scene, general)), register_map(general.table)
+        return {
+            f"{name.upper()}_{index}": words[registers[f"rectangle[{index}].{name}"].address]
+            for index in range(general.table)
+            for name in ("corner_0", "corner_1", "surface")
+        } | {
+            "ADDRESS_BITS": address_bits(general.table),
+            "INDEX_BITS": index_bits(fixed),
+            "RECT_BITS": len(rect_of(fixed).word),
+            "LATENCY": fixed.facts.rect_latency,
+            "CORNER_BITS": CORNER.implemented,
+            "SURFACE_BITS": surface_mask(general),
+        }
+
+    def blocks(self) -> Iterator[Any]:
+        """Elaborate both sources of rectangles."""
+        _, general, fixed = self._designs()
+        yield rect_rom(bit(), Rects(fixed), fixed)
+        yield rect_mem(
+            bit(), reset_signal(), SceneBus(address_bits(general.table)), readback=unsigned(WORD_BITS),
+            bad_rectangle=bit(), rects=Rects(general), config=general,
+        )  # fmt: skip
