@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Functional coverage of rays and rectangles: the kinds of intersection in a scene, counted in the golden model.
 
-Rectangles that the seed engine gives up before their division are not counted. Rectangles that the culler leaves out
-are counted: it may only leave out those that no primary ray of a group hits.
+Rectangles that the seed engine gives up before their division are not counted. In a design with culling, a rectangle is
+counted for the primary rays of a group if one of them hits it: the culler may leave out all others.
 """
 
 from __future__ import annotations
@@ -77,12 +77,14 @@ def count_intersections(scene: Scene, config: Configuration) -> np.ndarray:
         (*kind, ray)
         for rectangles, traced in traces(scene, config, keep=True)
         for ray, bounce in enumerate(traced.bounces)
-        for kind in _kinds(rectangles, bounce, config)
+        for kind in _kinds(rectangles, bounce, config, culled=config.culling and ray == 0)
     )
     return INTERSECTIONS[config.engine].counted(kinds)
 
 
-def _kinds(rectangles: Rectangles, bounce: Bounce, config: Configuration) -> Iterator[tuple[np.ndarray | int, ...]]:
+def _kinds(
+    rectangles: Rectangles, bounce: Bounce, config: Configuration, *, culled: bool
+) -> Iterator[tuple[np.ndarray | int, ...]]:
     """Yield, for each rectangle, the kinds of all rays that are tested against it, without the last point."""
     # 1 / 0 lies beyond every depth.
     nearest, nearest_scale = np.ones_like(bounce.alive, dtype=np.int64), np.zeros_like(bounce.alive, dtype=np.int64)
@@ -107,9 +109,15 @@ def _kinds(rectangles: Rectangles, bounce: Bounce, config: Configuration) -> Ite
         rank = np.select([~hit, nearest_scale == 0, ours < theirs, ours == theirs], range(4), 4)
         tested = bounce.alive.copy()
         if ends_early(config):
-            groups = (tested & (n * e > 0)).reshape(-1, config.units)
-            tested &= np.repeat(groups.any(axis=1), config.units)
+            tested &= _any_in_group(tested & (n * e > 0), config)
+        if culled:
+            tested &= _any_in_group(hit, config)
         yield axis, (np.sign(bounce.slopes[:, axis]) + 1)[tested], result[tested], rank[tested]
         nearer = hit & (ours < theirs)
         np.copyto(nearest, depth, where=nearer)
         np.copyto(nearest_scale, scale, where=nearer)
+
+
+def _any_in_group(rays: np.ndarray, config: Configuration) -> np.ndarray:
+    """Return, for each ray, whether any ray of its group is among these, bool (rays,)."""
+    return np.repeat(rays.reshape(-1, config.units).any(axis=1), config.units)
