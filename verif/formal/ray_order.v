@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The control of the rays: the rectangles that it visits and when, the number of rays, and that it ends.
 //
-// A tag models the answer of the memory: one cycle after a fetch it is the fetched index. It replaces the position of
-// the rectangle's plane, so that it can be followed to the z buffer.
+// The tag of group_run.v replaces the position of the rectangle's plane, so that it can be followed to the z buffer.
 //
 // A slot is as long as a division, or one cycle in the exact engine, where rectangles follow each other in a pipeline.
 //
-// Assumed, as the renderer guarantees: one cycle of reset at first; the usable rectangles, those that may be hit and
-// the reflections are constant from the cycle in which the control starts until the next reset; there are at most
-// REFLECTIONS reflections. As the units guarantee: if no ray is alive at the end of one pass, none is at the end of the
-// next one, which is not traced. Otherwise any ray may be alive, and run towards any plane, in any cycle. Reset may
-// come at any time, and registers are arbitrary before the first one.
+// Assumed besides group_run.v, as the units guarantee: if no ray is alive at the end of one pass, none is at the end of
+// the next one, which is not traced. Otherwise any ray may be alive, and run towards any plane, in any cycle.
 //
 // [proof]
 // claim = """each rectangle that a ray may hit is visited once and in order, and ends early if behind all; \
@@ -113,32 +109,9 @@ generate
     end
 endgenerate
 
-always @(posedge clk) if (fetch) tag <= index;
-
-// Since the last reset: whether the control was enabled, and the number of cycles that it has been active.
-reg known = 0;
-reg started;
-reg [TIME_BITS-1:0] cycles;
-reg [RECTANGLES-1:0] last_usable, last_may_hit;
-reg [REFLECTION_BITS-1:0] last_reflections;
+`include "group_run.v"
 reg last_any_towards;
-always @(posedge clk) begin
-    known <= 1;
-    started <= !reset && (started || enable);
-    cycles <= reset || !(started || enable) ? 0 : cycles + !done;
-    last_usable <= usable;
-    last_may_hit <= may_hit;
-    last_reflections <= reflections;
-    last_any_towards <= any_towards;
-end
-always @* begin
-    if (!known) assume (reset);
-    assume (reflections <= REFLECTIONS);
-    if (known && started) begin
-        assume (usable == last_usable && may_hit == last_may_hit);
-        assume (reflections == last_reflections);
-    end
-end
+always @(posedge clk) last_any_towards <= any_towards;
 
 // A ray lasts from the cycle after reset_z_buf to add_colour; for a lost ray, where none was alive, that is one cycle.
 // Visits are starts on the tagged plane; place counts cycles.
@@ -235,27 +208,17 @@ end
 
 // The control ends within the cycles of the budget's formula for the usable rectangles, and takes exactly as many if
 // nothing was skipped. Done stays high.
-function [5:0] count(input [RECTANGLES-1:0] mask);
-    integer i;
-    begin
-        count = 0;
-        for (i = 0; i < RECTANGLES; i = i + 1) count = count + mask[i];
-    end
-endfunction
 wire [TIME_BITS-1:0] pass = usable == 0 ? 2 : count(usable) * STEPS + RESULT_LATENCY;
 wire [TIME_BITS-1:0] rays_cycles = (rays[0] ? pass : 0) + (rays[1] ? 2 * pass : 0) + (rays[2] ? 4 * pass : 0);
 reg some_early, some_lost;
 wire spared = some_early || some_lost || (usable & ~may_hit) != 0;
-reg was_done;
 always @(posedge clk) begin
     some_early <= started && (some_early || ended);
     some_lost <= started && (some_lost || reflected && !any_alive);
-    was_done <= done && !reset;
 end
 always @* if (known && started) begin
     if (done) assert (cycles <= 2 + rays_cycles && (spared || cycles == 2 + rays_cycles));
     else assert (cycles < RUN_BOUND);
-    if (was_done) assert (done);
 end
 
 // Counters in range.

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The control of the exact engine with LIGHT=1: which rectangles each pass of rays and each shadow pass tests, and when.
 //
-// A tag models the answer of the memory, as in ray_order: one cycle after a fetch it is the fetched index, and it
-// replaces the position of the rectangle's plane.
+// The tag of group_run.v replaces the position of the rectangle's plane, so that it can be followed to the write.
 //
-// Assumed, as the renderer guarantees: one cycle of reset at first; the usable rectangles, those that may be hit and
-// the reflections are constant from the cycle in which the control starts until the next reset; there are at most
-// REFLECTIONS reflections. As the units guarantee: if no ray is alive at the end of one pass, none is at the end of the
-// next one, which is not traced. Otherwise any ray may be alive, and any hit point in question, in any cycle. Reset may
-// come at any time, and registers are arbitrary before the first one.
+// Assumed besides group_run.v, as the units guarantee: if no ray is alive at the end of one pass, none is at the end of
+// the next one, which is not traced. Otherwise any ray may be alive, and any hit point in question, in any cycle.
 //
 // [proof]
 // claim = """a pass of rays and a shadow pass each test every rectangle that they may hit once and in order; a shadow \
@@ -56,29 +52,7 @@ exact_control dut (
     .steps_store_ray(store_ray), .steps_aim(aim), .steps_write_shadow(write_shadow), .offered_word(offered_surface)
 );
 
-always @(posedge clk) if (fetch) tag <= index;
-
-reg known = 0;
-reg started;
-reg [TIME_BITS-1:0] cycles;
-reg [RECTANGLES-1:0] last_usable, last_may_hit;
-reg [REFLECTION_BITS-1:0] last_reflections;
-always @(posedge clk) begin
-    known <= 1;
-    started <= !reset && (started || enable);
-    cycles <= reset || !(started || enable) ? 0 : cycles + !done;
-    last_usable <= usable;
-    last_may_hit <= may_hit;
-    last_reflections <= reflections;
-end
-always @* begin
-    if (!known) assume (reset);
-    assume (reflections <= REFLECTIONS);
-    if (known && started) begin
-        assume (usable == last_usable && may_hit == last_may_hit);
-        assume (reflections == last_reflections);
-    end
-end
+`include "group_run.v"
 
 // A pass of rays lasts from the cycle after reset_z_buf until aim, which lasts AIM_CYCLES. A shadow pass follows in the
 // next cycle if any hit point is in question then, and lasts until add_colour. A shadow pass is dark from the cycle
@@ -144,23 +118,13 @@ end
 always @* if (known && !started) assert (!done && !find_intersection && !write_z_buf && !write_shadow && !add_colour);
 
 // The control ends within the cycles of the budget's formula.
-function [5:0] count(input [RECTANGLES-1:0] mask);
-    integer i;
-    begin
-        count = 0;
-        for (i = 0; i < RECTANGLES; i = i + 1) count = count + mask[i];
-    end
-endfunction
 wire [TIME_BITS-1:0] rays_end = count(rays == 0 ? usable & may_hit : usable) + 2;  // the last write
 wire [TIME_BITS-1:0] light_from = rays_end + AIM_CYCLES + 1;
 wire [TIME_BITS-1:0] most = 2 * count(usable) + AIM_CYCLES + 7;
 wire [TIME_BITS-1:0] rays_cycles = (rays[0] ? most : 0) + (rays[1] ? 2 * most : 0) + (rays[2] ? 4 * most : 0);
-reg was_done;
-always @(posedge clk) was_done <= done && !reset;
 always @* if (known && started) begin
     if (done) assert (cycles <= 2 + rays_cycles);
     else assert (cycles < RUN_BOUND);
-    if (was_done) assert (done);
 end
 
 // Invariants: the state matches the counts, and the waiting rectangles follow the visited ones.

