@@ -26,7 +26,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from raycaster.configuration import Configuration, configure
-from raycaster.engines import SEED
+from raycaster.engines import ENGINES, SEED
 from raycaster.engines.beam import (
     AIM_LATENCY,
     TESTER_LATENCY,
@@ -59,8 +59,7 @@ ORDER = (
 """Names of the properties, in the order of tables. The file of each has underscores for dashes."""
 
 WORDS: dict[str, dict[str, Any]] = {
-    "exact": {"engine": "exact"},
-    "beam": {"engine": "beam"},
+    **{name: {"engine": name} for name in ENGINES},
     # For properties that do not depend on the number of units or rectangles: designs that are converted quickly.
     "one-unit": {"units": 1, "allow_underrun": True},
     "tiny": {"screen": "tiny", "units": 2, "allow_underrun": True},

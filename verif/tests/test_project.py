@@ -39,7 +39,7 @@ MAY_IMPORT = {
     "debug": ("hdl", "raycaster", "golden", "rtl", "convert", "sim"),
     "play": ("hdl", "raycaster", "golden", "rtl", "sw", "convert", "sim"),
     "web": ("hdl", "raycaster", "sw", "convert", "sim", "debug", "play"),
-    "verif": ("hdl", "raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga", "sim"),
+    "verif": ("hdl", "raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga", "sim", "debug"),
     "report": ("hdl", "raycaster", "golden", "rtl", "convert", "fit", "fpga", "sim", "verif", "web"),
     "docs": (
         "hdl", "raycaster", "cli", "golden", "rtl", "convert", "fpga", "sim", "debug", "play", "web", "verif", "report",
