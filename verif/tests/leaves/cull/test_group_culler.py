@@ -96,7 +96,7 @@ def test_group_culler(config, tmp_path, random):
     stimulus, expected, fates = [], {}, set()
 
     # Faults are planted in the design with one unit; the others show that other sizes work too.
-    some = 600 if config.units == 1 else 200
+    some = 1500 if config.units == 1 else 200
     for (camera, drawn), _ in zip(scenes(random, config), range(max(6, some // count)), strict=False):
         start = any_start(random, rows, groups)
         first = start[0] * groups + start[1]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Leaf tests of `rect_tester`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
-from itertools import chain
+from itertools import chain, product
 
 import numpy as np
 from exact_vectors import by_reflections, by_turn, exact_config
@@ -61,6 +61,12 @@ def extreme_rays(config: Configuration):
                     eye, slope = np.full(3, other), np.full(3, sign * steepest)
                     eye[axis], slope[axis] = place, -steepest if place > 0 else steepest
                     yield table, range(3), eye, slope, None
+    # Planes close to the last mirror's, where a wrong bit of either distance matters.
+    for axis, away in product(range(3) if config.reflections else (), (-33, -9, -1, 0, 1, 9, 33)):
+        near = corners.copy()
+        near[axis, :, axis] = WORLD_SIZE // 2 + away
+        walls = Rectangles(near, np.zeros((3, 3), dtype=np.uint8), np.ones(3, dtype=bool))
+        yield walls, range(3), np.full(3, LAST - far), np.full(3, steepest), (axis, WORLD_SIZE // 2)
 
 
 @by_turn
