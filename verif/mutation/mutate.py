@@ -607,9 +607,11 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
 def _found(kept: Outcome) -> str:
     found = kept.figures
     every = sum(found[kind] for kind in OUTCOMES)
+    unexplained = f", {found['surviving']:,} survive without an explanation" if found["surviving"] else ""
     return (
         f"{every:,} faults in {found['modules']} modules: {found['caught']:,} caught, "
-        f"{found['equivalent'] + found['contract']} change nothing (proved), {found['explained']} explained; "
+        f"{found['equivalent'] + found['contract']} change nothing (proved), {found['explained']} explained"
+        f"{unexplained}; "
         f"{found['caught_of_the_rest']:.1%} of those that change something are caught, {found['worst_caught']:.1%} in "
         "the worst module"
     )
