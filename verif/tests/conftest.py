@@ -23,6 +23,7 @@ from raycaster.convert import provenance
 from raycaster.hdl.elaboration import forgetting
 from raycaster.hdl.leaf import Leaf
 from raycaster.options import run_command
+from raycaster.output import MARK
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import MODELS_VARIABLE, build_model, find_tool, run_bench
 from raycaster.verif.recording import RECORD_VARIABLE, record_test
@@ -167,6 +168,24 @@ def called(*words: str, cwd: Path, program: Callable[[list[str]], int | None] = 
     ):
         run_command(lambda: program(list(words)))
     return subprocess.CompletedProcess(words, ended.value.code, out.getvalue(), err.getvalue())
+
+
+def refusal(directory: Path, *words: str, late: bool = False) -> str:
+    """Run a command in a directory, where it must fail with one line and change no file, and return the line.
+
+    Work may have been announced if the mistake shows `late`.
+    """
+
+    def files() -> dict[Path, int]:
+        return {path: path.stat().st_mtime_ns for path in directory.rglob("*") if path.is_file() and path.name != MARK}
+
+    before = files()
+    done = called(*words, cwd=directory)
+    *announced, error, end = (done.stdout + done.stderr).split("\n")
+    assert (done.returncode, bool(announced), end) == (2, late, ""), done
+    assert error.startswith("error: ") and error.isprintable(), error
+    assert files() == before
+    return error.removeprefix("error: ")
 
 
 def run_tool(directory: Path, *command: str, **variables: str) -> subprocess.CompletedProcess[str]:

@@ -31,21 +31,15 @@ DESIGNS = {
 
 
 @pytest.mark.usefixtures("random")
-@pytest.mark.slow_sets(quick=["motion-exact", "register-exact", "traffic-exact"])
+@pytest.mark.slow_sets(quick=["register-exact", "traffic-exact"])
 @pytest.mark.parametrize("design", DESIGNS)
-@pytest.mark.parametrize("name", ["motion", "register", "traffic"])
+@pytest.mark.parametrize("name", ["register", "traffic"])
 def test_bench(bench: Bench, name: str, design: str):
-    """Changes appear only in whole frames; registers and their effects on the picture; random traffic and resets."""
+    """Registers and their effects on the picture; random traffic and resets, after which only whole frames change."""
     simulator, configuration, scene = DESIGNS[design]
     first = 100 * seed()
     seeds = tuple(range(first, first + TRAFFIC_SEEDS[simulator]))
     bench(f"verif.benches.{name}_bench", configuration, simulator, scene, seeds=seeds)
-
-
-@pytest.mark.slow
-def test_motion_full_size(bench: Bench):
-    """Motion at 640x480."""
-    bench("verif.benches.motion_bench", configure(), "verilator", FULL_SCENE)
 
 
 @pytest.mark.slow_sets("beam-pairs", "exact", "icarus", "seed")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SMALL_SCENE, called
+from conftest import SMALL_SCENE
 from small_program import write_program
 
 from raycaster.configuration import configure
@@ -268,32 +268,6 @@ def test_too_slow_gets_one_line(tmp_path, monkeypatch, capsys, clk, shift_clk, c
     with pytest.raises(UserError, match=f"^too slow: {missed}; the reports are in .+$"):
         bitstream.main([str(SMALL_SCENE), "--output", str(tmp_path)])
     assert capsys.readouterr().out.count("MISSED") == 1
-
-
-@pytest.mark.slow_sets("verify dvi")
-@pytest.mark.parametrize(
-    ("options", "complaint"),
-    [
-        (("--board", "ice40"), f"board: expected {', '.join(board.name for board in BOARDS[:-1])} or ulx3s, got ice40"),
-        (("nowhere.toml",), "nowhere.toml: cannot be read"),
-        ((str(SMALL_SCENE), "--colour-bits", "4"), "colour_bits: a DVI link carries 8 bits"),
-        ((str(SMALL_SCENE), "--engine", "beam", "--screen", "play"), "screen: play is for simulation only; leave it"),
-    ],
-)
-@pytest.mark.parametrize("words", [("bitstream",), ("verify", "dvi")], ids=" ".join)
-def test_bad_options_get_one_line(tmp_path, words, options, complaint):
-    done = called(*words, *options, cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.startswith(f"error: {complaint}")
-    assert done.stderr.count("\n") == 1
-    assert not list(tmp_path.rglob("*.bit"))
-
-
-@pytest.mark.parametrize("given", [(str(SMALL_SCENE),), ("--fix", "all")], ids=["scene", "fix"])
-def test_the_game_takes_no_scene(tmp_path, refuses, given):
-    error = refuses(bitstream.main, "--game", *given, "--output", str(tmp_path / "out"))
-    assert error == "error: game: the game sets up its own scene; leave out SCENE, FIX and FIT\n"
-    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(

@@ -7,11 +7,10 @@ import dataclasses
 import itertools
 import json
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT, SMALL_SCENE, Bench, called
+from conftest import ROOT, SMALL_SCENE, Bench
 from rich.console import Console
 from scene_vectors import fixed_config
 
@@ -21,7 +20,7 @@ from raycaster.design import design_for
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.fit.choice import keep_choice, kept_choice
-from raycaster.fit.fixing import FIT, SCOPES, configuration_of, design_of, fix, fixed_rectangle
+from raycaster.fit.fixing import FIT, SCOPES, design_of, fix, fixed_rectangle
 from raycaster.fit.unneeded import at_the_edge, covered, needed, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene
 from raycaster.fpga import fit as search
@@ -205,22 +204,6 @@ def test_omissions_say_why():
     assert "tests of the reflection against green slab, side" in omissions("floor", "all")
 
 
-@pytest.mark.parametrize(
-    ("path", "options", "scope", "complaint"),
-    [
-        (BOXES, {}, "some", "fix: expected rects or all, got some"),
-        (BOXES, {"rectangles": "12"}, "all", "leave RECTANGLES out"),
-        (None, {}, "all", "needs a scene"),
-        (BOXES, {}, None, "give FIX=rects or FIX=all"),
-        (Path("nowhere.toml"), {}, "all", "nowhere.toml"),
-    ],
-)
-def test_bad_input_is_one_line(path, options, scope, complaint):
-    with pytest.raises(UserError, match=complaint) as caught:
-        configuration_of(path, options, scope, Console(quiet=True))
-    assert "\n" not in str(caught.value)
-
-
 def test_without_a_scope_a_design_is_general():
     assert design_of(BOXES, {"units": "64"}, None, Console(quiet=True)) == design_for(BOXES, {"units": "64"})
 
@@ -290,21 +273,17 @@ def test_no_pixel_changes(bench: Bench, tmp_path, engine, name, scope, options):
     assert result["worst_group_cycles"] <= design.configuration.group_cycles
 
 
-@pytest.mark.slow_sets("beam", "exact", "seed")
-@pytest.mark.parametrize("engine", ENGINES)
-def test_any_camera_may_look_at_fixed_rectangles(bench: Bench, engine):
-    """The scene has coplanar rectangles and some at x = 0 that `rects` leaves out."""
-    scene = SCENES / "mirror_room.toml"
-    design = fix(scene, {"engine": engine, "screen": "tiny"}, "rects").design
-    bench("verif.benches.camera_bench", design.configuration, "verilator", scene, seeds=tuple(range(24)))
-
-
-@pytest.mark.slow_sets("all")
-@pytest.mark.parametrize("scope", SCOPES)
-def test_fixed_words_ignore_writes(bench: Bench, scope):
+@pytest.mark.slow_sets(quick=["icarus-exact-rects"])
+@pytest.mark.parametrize(
+    ("simulator", "engine", "scope"),
+    [*(("icarus", "exact", scope) for scope in SCOPES), *(("verilator", engine, "rects") for engine in ENGINES)],
+)
+def test_fixed_words_and_any_camera(bench: Bench, simulator, engine, scope):
+    """Verilator's scene has coplanar rectangles and some at x = 0 that `rects` leaves out."""
     assert address_bits(0) == 4
-    design = fix(SMALL_SCENE, {"engine": "exact", "screen": "tiny"}, scope).design
-    bench("verif.benches.fixed_bench", design.configuration, "icarus", SMALL_SCENE)
+    scene, cameras = (SMALL_SCENE, 1) if simulator == "icarus" else (SCENES / "mirror_room.toml", 32)
+    design = fix(scene, {"engine": engine, "screen": "tiny"}, scope).design
+    bench("verif.benches.fixed_bench", design.configuration, simulator, scene, seeds=tuple(range(cameras)))
 
 
 @pytest.mark.slow_sets("exact", "seed")
@@ -407,19 +386,3 @@ def test_a_choice_for_another_scene_is_refused(tmp_path, monkeypatch):
     scene.write_text(SMALL_SCENE.read_text().replace("20, 250", "21, 250"))
     with pytest.raises(UserError, match="is not the scene that"):
         design_of(scene, {}, FIT, Console(quiet=True))
-
-
-@pytest.mark.parametrize(
-    ("arguments", "complaint"),
-    [
-        (("--fps", "75"), "240 rows are shown at 60 frames per second, not 75"),
-        (("--fix", "some"), "fix: expected rects or all, got some"),
-        (("--error", "-1"), "error: expected per cent of the pixels, 0 to 100, got -1"),
-        (("--error", "0.0001", "--engine", "seed", "--fraction-bits", "0"), "no design shows .* at most 0.0001%"),
-    ],
-)
-def test_bad_searches_get_one_line(arguments, complaint):
-    done = called("fit", str(BOXES), *arguments, cwd=ROOT)
-    assert done.returncode == 2
-    said = done.stderr.removeprefix("fit: usually 4 min per scene, less with kept results\n")
-    assert re.fullmatch(f"error: .*{complaint}.*\n", said)

@@ -66,9 +66,13 @@ def table_of(scene: Scene) -> Rectangles:
 def test_the_table_of_screens(name):
     option, value = name.split("=")
     key = ("vga", int(value)) if option == "ROWS" else (value, 48)
-    screen = (SCREENS | BEAM_SCREENS)[key]
+    screen, page = (SCREENS | BEAM_SCREENS)[key], screen_of_the_page(name)
     found = screen.columns, screen.rows, screen.centre_column, screen.horizon_row, screen.view_distance
-    assert tuple(screen_of_the_page(name).values()) == found
+    assert tuple(page.values()) == found
+    slopes, camera = primary_slopes(screen), Camera(position=(0, 0, 0))
+    assert slopes.shape == (screen.rows, screen.columns, 3)
+    for row, column in ((0, 0), (screen.horizon_row, screen.centre_column), (screen.rows - 1, screen.columns - 1)):
+        assert slopes[row, column].tolist() == slope_of(page, camera, row, column)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -86,7 +90,8 @@ def test_the_page_says_what_golden_draws(name, options):
     cameras = [scene.camera]
     if options["engine"] == "exact":
         cameras.append(Camera(position=scene.camera.position, **TURNED))
-    config = configure(**options, screen="tiny", turn=options["engine"] == "exact", units=1, rectangles=32,
+    looks = dict.fromkeys(("turn", "light"), options["engine"] == "exact")
+    config = configure(**options, **looks, screen="tiny", units=1, rectangles=32,
                        reflections=4, materials=True, patterns=True, allow_underrun=True)  # fmt: skip
     hit = seed_hit(config.fraction_bits, config.rounding) if config.facts.divides else exact_hit
     screen = screen_of_the_page("SCREEN=tiny")
@@ -98,6 +103,8 @@ def test_the_page_says_what_golden_draws(name, options):
             Rectangles.of_scene(shown), camera.position, shown.background, slopes[chosen], shown.reflections,
             light=shown.light,
         )  # fmt: skip
+        picture = model_of(config).render(shown, config.screen_geometry)
+        assert np.array_equal(picture.reshape(-1, 3)[chosen], trace.colours)
         table, seen = table_of(shown), (shown.reflections, shown.light, hit)
         for ray, number in enumerate(chosen):
             slope = slope_of(screen, camera, *divmod(number, screen["columns"]))

@@ -201,20 +201,6 @@ def test_the_top_connects_what_it_says(name, bits, colours, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("words", "complaint"),
-    [
-        (("--board=de0",), "board: expected de10_lite, de1_soc, de2 or de2_115, got de0 (did you mean de2?)"),
-        (("none.toml", "--board=de2"), "none.toml: cannot be read: No such file or directory"),
-        (("--board=de2", "--colour-bits=9"), "colour_bits: "),
-        (("--board=de2", "--engine=beam"), "engine: the boards' projects run at 50 MHz, but the beam engine needs"),
-    ],
-)
-def test_mistakes_get_one_line(words, complaint, refuses, tmp_path):
-    assert refuses(quartus.main, *words, "--output", str(tmp_path / "out")).startswith(f"error: {complaint}")
-    assert not (tmp_path / "out").exists()
-
-
-@pytest.mark.parametrize(
     ("script", "complaint", "logged"),
     [
         (None, "quartus_sh is not on the path, and the Terasic DE2 needs Quartus II 13.0sp1 or older; the project is "
