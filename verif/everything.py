@@ -20,6 +20,7 @@ from typing import Any
 
 from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
+from raycaster.digests import PAGES
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.jobs import add_fresh_option, positive
@@ -31,9 +32,6 @@ from raycaster.sim import ensure_tools
 TESTS = Path(__file__).resolve().with_name("tests")
 STATE = Path("build/verify-all.jsonl")
 """File of JSON lines, below the root: for each run digests of the sources, names of the tests, and their outcomes."""
-
-PAGES = (".md", ".png", ".svg", ".webp")
-"""Suffixes of files that only people read; the tests of the pages are quick."""
 
 
 class State:

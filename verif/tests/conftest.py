@@ -141,18 +141,13 @@ def bench(output: Path) -> Bench:
 
 
 @pytest.fixture
-def refuses(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
-    """Return a function that runs a command, which must fail with one line on standard error, and returns the line."""
+def refuses() -> Callable[..., str]:
+    """Return a function that calls a command's function with options, which must fail with one line, and returns it."""
 
-    def refused(main: Callable[[], int | None], *options: str) -> str:
-        monkeypatch.setattr("sys.argv", ["command", *options])
-        with pytest.raises(SystemExit) as ended:
-            run_command(main)
-        assert ended.value.code == 2
-        error = capsys.readouterr().err
-        assert error.startswith("error: ")
-        assert error.count("\n") == 1
-        return error
+    def refused(main: Callable[..., int | None], *options: str) -> str:
+        done = called(*options, cwd=Path.cwd(), program=lambda words: main(words) if words else main())
+        assert (done.returncode, done.stderr[:7], done.stderr.count("\n")) == (2, "error: ", 1), done
+        return done.stderr
 
     return refused
 

@@ -193,11 +193,10 @@ def test_names_differ_where_scenes_do(tmp_path):
 
 
 def test_omissions_say_why():
-    def omissions(name, scope):
-        fixed = fix(SCENES / f"{name}.toml", {"screen": "tiny"} if name == "boxes" else {}, scope)
-        return dict(dataclasses.astuple(one) for one in fixed.omissions)
+    def omissions(name, scope, **options):
+        return dict(map(dataclasses.astuple, fix(SCENES / f"{name}.toml", options, scope).omissions))
 
-    boxes = omissions("boxes", "all")
+    boxes = omissions("boxes", "all", screen="tiny")
     assert boxes["rectangle memory: 36 words, three copies each"] == "rectangles are constants"
     assert boxes["ceiling"] == "no ray of the picture meets it first"
     assert "memory of camera and background" not in omissions("matte", "rects")
@@ -303,13 +302,10 @@ def test_a_rectangle_wrongly_left_out_is_caught(bench: Bench, engine):
 @pytest.mark.parametrize("scope", SCOPES)
 @pytest.mark.parametrize("engine", ENGINES)
 def test_fixed_rectangles_have_no_memory(engine, scope, tmp_path):
-    """Fixed designs have no rectangle memory, and the same scene always produces identical files."""
-    config = fix(BOXES, {"engine": engine}, scope).design.configuration
-    files = {path.name: path.read_text() for path in write_verilog(config, tmp_path / "one")}
-    assert not {"rect_mem.v", "rect_slot.v", "rect_sorter.v"} & set(files)
-    assert ("camera_mem.v" in files) == (scope == "rects")
-    again = {path.name: path.read_text() for path in write_verilog(config, tmp_path / "two")}
-    assert files == again
+    files = write_verilog(fix(BOXES, {"engine": engine}, scope).design.configuration, tmp_path / "verilog")
+    names = {path.stem for path in files}
+    assert not {"rect_mem", "rect_slot", "rect_sorter"} & names
+    assert ("camera_mem" in names) == (scope == "rects")
 
 
 @pytest.mark.slow

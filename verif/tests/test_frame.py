@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import numpy as np
@@ -55,8 +56,8 @@ def test_every_scene(bench: Bench, engine):
     # The fewest units that meet the row budget compile fastest.
     size = {"units": 16} if engine == "seed" else {}
     looks = dict.fromkeys(ENGINES[engine].looks, True)
-    for scene in scenes:
-        drawn(bench, configure(engine=engine, screen="tiny", reflections=2, **looks, **size), scene)
+    design = configure(engine=engine, screen="tiny", reflections=2, **looks, **size)
+    bench("verif.soak.bench", design, "verilator", os.pathsep.join(map(str, scenes)), seeds=tuple(range(len(scenes))))
 
 
 @pytest.mark.slow

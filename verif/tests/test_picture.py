@@ -54,7 +54,7 @@ def test_shapes_must_agree():
 def test_first_wrong():
     """The first wrong pixel in scan order is returned as column and row."""
     picture = np.zeros((4, 6, 3), dtype=np.uint8)
+    assert first_wrong(picture, picture) is None
     other = picture.copy()
-    assert first_wrong(picture, other) is None
     other[2, 1, 0] = other[1, 4, 2] = 9
     assert first_wrong(picture, other) == (4, 1)

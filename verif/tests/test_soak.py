@@ -6,18 +6,15 @@ from __future__ import annotations
 import json
 from collections import Counter
 from itertools import product
-from pathlib import Path
 
 import pytest
-from conftest import BUILD, ROOT, SMALL_SCENE, broken, called
+from conftest import BUILD, ROOT, broken, called
 from rich.console import Console
 
 from raycaster.configuration import configure
-from raycaster.design import Design
 from raycaster.engines import ENGINES
 from raycaster.golden.catalogue import catalogue
 from raycaster.scene import dump_scene, load_scene
-from raycaster.sim import scenes
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import SimulationError, build_model, convert, run_bench
 from raycaster.verif.random_scenes import STYLES, random_scene
@@ -78,11 +75,6 @@ def test_only_what_rounds_is_compared_twice(engine, capsys):
     result = {"seed": 1, "reflections": 0, "pixels": 200, "wrong_vs_golden": 3, "wrong_vs_exact": 30}
     show([result], 1.0, configure(engine=engine), Console(width=200))
     assert ("15.00 %" in capsys.readouterr().out) == (engine == "seed")
-    run = Design(Path("a.toml"), load_scene(SMALL_SCENE), configure(engine=engine), 0)
-    rest = dict.fromkeys(("worst_row_cycles", "worst_group_cycles", "frame_cycles", "underrun", "sim_seconds"), 0)
-    scenes.show([scenes.Outcome(run, result | rest)], Console(width=200))
-    [row] = [line.split() for line in capsys.readouterr().out.splitlines() if line.split()[:1] == ["a"]]
-    assert row[1:3] == [engine, "3"] and ("30" in row) == (engine == "seed")
 
 
 @pytest.mark.slow

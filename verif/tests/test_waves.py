@@ -19,7 +19,7 @@ from raycaster.errors import UserError
 from raycaster.rtl.common.records import Signs
 from raycaster.sim.simulator import FST_HEADERS, has_headers
 
-VCD = """
+VCD = f"""
 $timescale 10ps $end
 $scope module bench $end
 $var reg 1 ! clk $end
@@ -31,33 +31,14 @@ $var real 1 % share $end
 $upscope $end
 $upscope $end
 $enddefinitions $end
-#500
-$dumpvars
-1!
-bxxx "
-bz #
-b1 $
-r0.5 %
-$end
-#1000
-0!
-#2000
-1!
-b001 "
-b1000000000000000000000000000000000000000000000000000000000000000000001 #
-#3000
-0!
-#4000
-1!
-b10x "
-b10 $
-#5000
-0!
-#6000
-1!
-b111 "
-#7000
-0!
+#500 $dumpvars 1! bxxx " bz # b1 $ r0.5 % $end
+#1000 0!
+#2000 1! b001 " b1{"0" * 68}1 #
+#3000 0!
+#4000 1! b10x " b10 $
+#5000 0!
+#6000 1! b111 "
+#7000 0!
 """
 
 
