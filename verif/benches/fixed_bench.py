@@ -1,19 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: a design with a built-in scene: its registers, and its pictures from other cameras."""
+"""cocotb: the registers of a design with a built-in scene."""
 
 from __future__ import annotations
 
-import itertools
-
 import cocotb
-import numpy as np
 from cocotb.handle import HierarchyObject
 
-from raycaster.configuration import WORLD_SIZE
 from raycaster.sim.harness import Harness
 
 EVERY_BIT = (1 << 32) - 1
-CORNERS = list(itertools.product((0, WORLD_SIZE - 1), repeat=3))
 
 
 @cocotb.test()
@@ -43,22 +38,3 @@ async def what_is_fixed_ignores_writes(bench: HierarchyObject) -> None:
     assert await bus.read("status") | {"busy": 0, "frame": 0} == {
         "busy": 0, "underrun": 0, "bad_rectangle": 0, "frame": 0,
     }  # fmt: skip
-
-
-@cocotb.test()
-async def cameras(bench: HierarchyObject) -> None:
-    """Pictures are right from a place per seed, the first ones corners of the world, unless the camera is fixed."""
-    harness = Harness(bench)
-    bus, scene, reflections = harness.bus, harness.scene, harness.reflections
-    assert harness.configuration.fixed is not None
-    if harness.configuration.fixed.camera is not None:
-        return
-    await harness.reset()
-    await bus.load_scene(scene)
-    for seed in harness.job.seeds:
-        anywhere = tuple(np.random.default_rng(seed).integers(WORLD_SIZE, size=3).tolist())
-        place = CORNERS[seed] if seed < len(CORNERS) else anywhere
-        await bus.write_camera(place)
-        await bus.commit(reflections=reflections)
-        await harness.expect(harness.seen_from(place), reflections, f"camera {seed} at {place}")
-    assert not (await bus.read("status"))["underrun"], "a row was not complete in time"

@@ -33,7 +33,7 @@ async def soak(bench: HierarchyObject) -> None:
             if job.stiff:
                 scene = cases[seed].scene.model_copy(update={"reflections": configuration.reflections})
             elif job.scene:
-                scene = load_scene(job.scene.split(os.pathsep)[seed], configuration.rectangles)
+                scene = load_scene(job.scene.split(os.pathsep)[seed], configuration.capacity)
             else:
                 scene = random_scene(seed, configuration.rectangles, configuration.reflections, configuration.looks)
             result = {"seed": seed, "title": scene.title} | await show(harness, scene)

@@ -20,7 +20,6 @@ from rich.text import Text
 
 from raycaster import output
 from raycaster.cli.__main__ import main
-from raycaster.fit.fixing import fix, show
 from raycaster.options import run_command
 from raycaster.output import Console, Table, emptied, printable, replaced
 from raycaster.scene import Scene, load_scene
@@ -97,12 +96,6 @@ def test_text_is_shown_as_it_is():
     assert printable(HOSTILE) == ESCAPED
     assert printable("ä 語 [x]") == "ä 語 [x]"
     assert printable("a\nb\x07\udcff", lines=True) == "a\nb\\x07\\udcff"
-
-
-def test_names_in_tables(hostile_scene: Path, capsys):
-    show(fix(hostile_scene, {}, "all"), Console(width=400))
-    assert ESCAPED in (said := capsys.readouterr().out)
-    assert all(line.isprintable() for line in said.splitlines())
 
 
 @pytest.mark.parametrize(

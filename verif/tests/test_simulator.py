@@ -142,7 +142,8 @@ def test_models_share_a_library(tmp_path, own_models, monkeypatch):
         return libraries[-1]
 
     monkeypatch.setattr(simulator, "_runtime", recorded)
-    for flags in (VERILATOR_FLAGS, (*VERILATOR_FLAGS, "-CFLAGS", "-O0")):
+    quick = *VERILATOR_FLAGS, "-CFLAGS", "-O0"
+    for flags in (quick, (*quick, "-CFLAGS", "-DUNUSED")):
         directory = build_model(TINY, build=tmp_path, flags=flags).directory
         assert (directory / "bench").exists()
         assert list(directory.glob("verilated*.o")) == []

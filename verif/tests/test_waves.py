@@ -8,7 +8,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from conftest import SMALL_SCENE, called
+from conftest import SMALL_SCENE, called, write_script
 
 from raycaster.debug.probes.ray import fields
 from raycaster.debug.trace import main as trace
@@ -135,8 +135,7 @@ def test_the_viewer_that_is_there_is_opened(tmp_path, monkeypatch):
     monkeypatch.setenv("DISPLAY", ":0")
     assert viewer(waves, files) is None
     for name in ("surfer", "gtkwave"):
-        (tmp_path / name).write_text("#!/bin/sh\n")
-        (tmp_path / name).chmod(0o755)
+        write_script(tmp_path, name)
         assert viewer(waves, files)[0] == name
     monkeypatch.delenv("DISPLAY")
     assert viewer(waves, files) is None
@@ -147,9 +146,7 @@ def no_fst_headers(tmp_path, monkeypatch):
     """Emulate a machine without the headers that Verilator's FST writer needs."""
     for header in FST_HEADERS:
         (tmp_path / header).write_text("#error no such header here\n")
-    compiler = tmp_path / "g++"
-    compiler.write_text(f'#!/bin/sh\nexec {shutil.which("g++")} -I "{tmp_path}" "$@"\n')
-    compiler.chmod(0o755)
+    write_script(tmp_path, "g++", f'exec {shutil.which("g++")} -I "{tmp_path}" "$@"')
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
 
 

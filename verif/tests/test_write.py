@@ -9,6 +9,7 @@ import sys
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
@@ -64,27 +65,17 @@ def test_any_process_writes_the_same_bytes(tmp_path):
     assert written("1") == written("2") == written("3") == written("4") != {}
 
 
-def test_a_directory_is_replaced_as_a_whole(tmp_path):
-    directory = tmp_path / "verilog"
-    write_verilog(SMALL, directory)
-    (directory / "ray_unit_of_yesterday.v").write_text("module ray_unit;")
-    write_verilog(SMALL, directory)
-    assert not list(directory.glob("*yesterday*"))
-    assert [path.name for path in tmp_path.iterdir()] == ["verilog"], "nothing else is left"
-
-
-def test_a_conversion_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
+def test_a_directory_is_replaced_as_a_whole(tmp_path, monkeypatch):
+    """A conversion that fails leaves what was there, and one that succeeds leaves nothing of it."""
     directory = emptied(tmp_path / "verilog")
-    (directory / "kept.v").write_text("module kept;")
-
-    def fail(*_):
-        raise UserError("broken")
-
-    monkeypatch.setattr(write, "convert_hierarchy", fail)
-    with pytest.raises(UserError):
+    (directory / "yesterday.v").write_text("module yesterday;")
+    with monkeypatch.context() as patch, pytest.raises(UserError):
+        patch.setattr(write, "convert_hierarchy", Mock(side_effect=UserError("broken")))
         write_verilog(SMALL, directory)
-    assert [path.name for path in directory.glob("*.v")] == ["kept.v"]
-    assert [path.name for path in tmp_path.iterdir()] == ["verilog"]
+    assert [path.name for path in directory.glob("*.v")] == ["yesterday.v"]
+    files = write_verilog(SMALL, directory)
+    assert {*directory.glob("*.v")} == {*files}
+    assert [path.name for path in tmp_path.iterdir()] == ["verilog"], "nothing else is left"
 
 
 def test_one_block_alone_has_logic_on_the_clock():
