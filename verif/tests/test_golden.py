@@ -111,6 +111,25 @@ def test_traces_as_fractions_do(name, world, reflections):
         assert min(in_corners.values(), default=30) >= 30, f"{in_corners}; {repeat()}"
 
 
+@pytest.mark.parametrize("name", ["exact", "nearest-4"])
+def test_kept_values_of_hits_agree_with_each_other(name):
+    """The ratio of numerator and denominator is the way to the plane; a depth is a distance along x."""
+    rng, exact, hits = np.random.default_rng(seed()), name == "exact", 0
+    for table, camera, slopes in (any_world(rng) for _ in range(20)):
+        for bounce in MODELS[name][0].trace(table, camera, BACKGROUND, slopes, 2, keep=True).bounces:
+            for index in np.flatnonzero(table.visible):
+                hit, axis = bounce.hits[index], table.axes[index]
+                origins, slope, points = bounce.origins[hit], bounce.slopes[hit], bounce.points[index][hit]
+                n, e = bounce.numerators[index][hit], bounce.denominators[index][hit]
+                away = (table.low[index, axis] << (0 if exact else 4)) - origins[:, axis]
+                assert (n * slope[:, axis] == away * e).all() and (e != 0).all(), repeat()
+                far = np.abs(slope[:, 0]) * n if exact else np.abs(points[:, 0] - origins[:, 0])
+                assert (bounce.depths[index][hit] == far).all(), repeat()
+                assert bounce.valid[index][hit].all(), repeat()
+                hits += hit.sum()
+    assert hits > 100, repeat()
+
+
 @examples(100)
 @given(worlds(), st.integers(0, 4))
 def test_few_coordinates_trace_as_fractions_do(world, reflections):
