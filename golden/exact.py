@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from raycaster.golden.model import Bounce, Meeting, Model
-from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.golden.world import Rectangles
 
 
 @dataclass(frozen=True)
@@ -81,9 +81,8 @@ def _nearest(
         np.copyto(best_n, n, where=nearer)
         np.copyto(best_e, e, where=nearer)
         if bounce:
-            ways = slope * n
             bounce.note(
-                index, numerators=n, denominators=e, scales=e, quotients=ways[list(OTHER_AXES[axis])].T,
-                valid=ahead[:, None], points=(eye * e + ways).T, depths=np.abs(slope[0]) * n, hits=hit,
+                index, numerators=n, denominators=e, scales=e, valid=ahead[:, None], points=(eye * e + slope * n).T,
+                depths=np.abs(slope[0]) * n, hits=hit,
             )  # fmt: skip
     return winner, (best_n, best_e)

@@ -55,8 +55,8 @@ class Bounce:
     parallel ray. Seed: 2^F."""
 
     quotients: np.ndarray
-    """int64 (rectangles, rays, 2): the distance from the origin along u and v. Exact: slope times n, signed. Seed:
-    magnitudes |slope n / e|, rounded; 0 where not valid."""
+    """int64 (rectangles, rays, 2): the distance from the origin along u and v. Seed: magnitudes |slope n / e|, rounded;
+    0 where not valid. Exact: none, 0."""
 
     valid: np.ndarray
     """bool (rectangles, rays, 2): the coordinates on u and v exist: the plane is ahead, beyond the last mirror or in a

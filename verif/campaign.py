@@ -115,12 +115,7 @@ def repeated(command: str, arguments: argparse.Namespace, **options: Any) -> str
 def run_campaign(
     campaign: Campaign, console: Console, make_executor: Callable[[], Executor] = ProcessPoolExecutor
 ) -> Outcome:
-    """Run all cases.
-
-    Args:
-        campaign: the cases.
-        console: for the progress bar.
-        make_executor: see `raycaster.jobs.executors`.
+    """Run all cases, in executors as in `raycaster.jobs.executors`, with a progress bar on the console.
 
     Raises:
         UserError: a tool is missing.
@@ -169,7 +164,7 @@ def _build(campaign: Campaign) -> Model:
 
 def run_share(share: Campaign) -> tuple[list[dict], str]:
     """Run one simulation and return its results, and its message if it failed."""
-    directory = (share.output / f"from{share.cases[0]}").resolve()
+    directory = _directory(share).resolve()
     emptied(directory)  # a worker that died may have left files
     job = Job(
         share.configuration, output=str(directory), seeds=tuple(share.cases), stiff=share.stiff,

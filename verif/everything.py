@@ -20,11 +20,12 @@ from typing import Any
 
 from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
+from raycaster.digests import PAGES
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.jobs import add_fresh_option, positive
 from raycaster.options import CommandParser
-from raycaster.outcomes import Check, Outcome, add_keep_option, keep
+from raycaster.outcomes import Check, add_keep_option, keep
 from raycaster.output import Console
 from raycaster.sim import ensure_tools
 
@@ -32,75 +33,65 @@ TESTS = Path(__file__).resolve().with_name("tests")
 STATE = Path("build/verify-all.jsonl")
 """File of JSON lines, below the root: for each run digests of the sources, names of the tests, and their outcomes."""
 
-PAGES = (".md", ".png", ".svg", ".webp")
-"""Suffixes of files that only people read; the tests of the pages are quick."""
-
 
 class State:
-    """Outcomes of tests in this run and in earlier ones.
+    """Outcomes of tests in this run and in earlier ones with the same sources.
 
     Args:
-        path: file in which outcomes are kept.
+        path: file in which they are kept: an entry for each run with digests of the sources, followed by one for each
+            test that is not known yet and for each outcome.
 
     Attributes:
-        sources: digest of all sources except test files.
-        files: digests of test files, by name.
-        wanted: names of all tests that were requested with these sources.
-        outcomes: by test: outcome, seconds and, if it was skipped, the reason.
-        seconds: by test: duration of its last run, with any sources.
-        walls: wall-clock seconds of each run with these sources.
+        tests: by name: outcome, seconds and, if the test was skipped, the reason.
+        seconds: by name: duration of the last run, with any sources.
+        walls: wall-clock seconds of each run.
     """
 
     def __init__(self, path: Path):
         self._path = path
-        self.sources, self.files, self.wanted = "", {}, set()
-        self.outcomes, self.seconds, self.walls = {}, {}, []
+        self._run: Mapping[str, Any] = {"sources": "", "files": {}}
+        self.tests, self.seconds, self.walls = {}, {}, []
         for line in path.read_text().splitlines() if path.exists() else ():
             try:
                 self._take(json.loads(line))
             except json.JSONDecodeError:  # a line that was cut off when the machine stopped
                 continue
 
-    def add(self, entry: Mapping[str, Any]) -> None:
-        """Apply an entry, and append it to the file."""
+    def add(self, *entries: Mapping[str, Any]) -> None:
+        """Apply entries, and append them to the file."""
         self._path.parent.mkdir(parents=True, exist_ok=True)
         with self._path.open("a") as file:
-            file.write(json.dumps(entry) + "\n")
-        self._take(entry)
+            file.write("".join(json.dumps(entry) + "\n" for entry in entries))
+        for entry in entries:
+            self._take(entry)
 
     def _take(self, entry: Mapping[str, Any]) -> None:
         if "sources" in entry:
-            if entry["sources"] != self.sources or entry["fresh"]:
-                self.wanted, self.outcomes, self.walls = set(), {}, []
-            same = {name for name, digest in entry["files"].items() if digest == self.files.get(name)}
-            self.wanted = {test for test in self.wanted if _file(test) in same}
-            self.outcomes = {test: outcome for test, outcome in self.outcomes.items() if _file(test) in same}
-            self.sources, self.files = entry["sources"], entry["files"]
+            before, self._run = self._run, entry
+            if entry["sources"] != before["sources"] or entry["fresh"]:
+                self.tests, self.walls = {}, []
+            same = {name for name, digest in entry["files"].items() if digest == before["files"].get(name)}
+            self.tests = {test: outcome for test, outcome in self.tests.items() if _file(test) in same}
             self.walls.append(0.0)
-        elif "wanted" in entry:
-            self.wanted |= set(entry["wanted"])
-        else:
-            self.outcomes[entry["test"]] = entry
-            self.seconds[entry["test"]] = entry["seconds"]
-            self.walls[-1] = entry["at"]
+            return
+        self.tests[entry["test"]] = entry
+        if entry["outcome"] != "not_run":
+            self.seconds[entry["test"]], self.walls[-1] = entry["seconds"], entry["at"]
 
-    @property
-    def passed(self) -> set[str]:
-        """Tests that need not run again."""
-        return {test for test, entry in self.outcomes.items() if entry["outcome"] == "passed"}
+    def of(self, outcome: str) -> list[str]:
+        """List the tests with an outcome."""
+        return sorted(test for test, entry in self.tests.items() if entry["outcome"] == outcome)
 
     def figures(self) -> dict[str, Any]:
         """Counts, seconds, and the tests that failed, were skipped or did not run."""
-        of = {kind: [t for t, e in self.outcomes.items() if e["outcome"] == kind] for kind in ("failed", "skipped")}
-        reasons = Counter(self.outcomes[test]["reason"] for test in of["skipped"])
         return {
-            "tests": len(self.wanted | set(self.outcomes)),
-            "passed": len(self.passed),
-            "failed": sorted(of["failed"]),
-            "skipped": dict(reasons),
-            "not_run": len(self.wanted - set(self.outcomes)),
+            "tests": len(self.tests),
+            "passed": len(self.of("passed")),
+            "failed": self.of("failed"),
+            "skipped": dict(Counter(self.tests[test]["reason"] for test in self.of("skipped"))),
+            "not_run": len(self.of("not_run")),
             "runs": len(self.walls),
-            "seconds": round(sum(entry["seconds"] for entry in self.outcomes.values())),
+            "seconds": round(sum(entry["seconds"] for entry in self.tests.values())),
             "wall_seconds": round(sum(self.walls)),
         }
 
@@ -118,8 +109,8 @@ class Recorder:
 
     def pytest_xdist_node_collection_finished(self, ids: Sequence[str]) -> None:
         """Keep the names of the tests to run."""
-        if not set(ids) <= self._state.wanted:
-            self._state.add({"wanted": list(ids)})
+        new = [test for test in ids if test not in self._state.tests]
+        self._state.add(*({"test": test, "outcome": "not_run", "seconds": 0} for test in new))
 
     def pytest_runtest_logreport(self, report: Any) -> None:
         """Keep an outcome after the last phase of a test. A worker that crashes reports only one phase."""
@@ -128,14 +119,11 @@ class Recorder:
         if report.when in ("setup", "call"):
             return
         del self._phases[report.nodeid]
-        outcomes = {phase.outcome for phase in phases}
-        outcome = next((kind for kind in ("failed", "skipped") if kind in outcomes), "passed")
-        reason = ""
-        if outcome == "skipped":
-            said = next(phase.longrepr for phase in phases if phase.outcome == "skipped")
-            reason = str(said[2] if isinstance(said, tuple) else said).removeprefix("Skipped: ")
+        found = {phase.outcome: phase.longrepr for phase in phases}
+        outcome = next((kind for kind in ("failed", "skipped") if kind in found), "passed")
         self._state.add({
-            "test": report.nodeid, "outcome": outcome, "reason": reason,
+            "test": report.nodeid, "outcome": outcome,
+            "reason": found["skipped"][2].removeprefix("Skipped: ") if outcome == "skipped" else "",
             "seconds": round(sum(phase.duration for phase in phases), 2),
             "at": round(time.monotonic() - self._start, 1),
         })  # fmt: skip
@@ -197,15 +185,14 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
     return Provenance([configure(engine=name) for name in ENGINES])
 
 
-def _found(kept: Outcome) -> str:
-    figures = kept.figures
+def _said(figures: Mapping[str, Any]) -> str:
     return (
         f"{figures['passed']:,} of {figures['tests']:,} tests passed, {len(figures['failed'])} failed, "
         f"{sum(figures['skipped'].values())} were skipped and {figures['not_run']} did not run"
     )
 
 
-CHECKS = (Check("all tests, slow ones included", "each", ["verify-all"], _found),)
+CHECKS = (Check("all tests, slow ones included", "each", ["verify-all"], lambda kept: _said(kept.figures)),)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -224,9 +211,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     state = State(path)
     sources, files = tested_sources(root)
     state.add({"sources": sources, "files": files, "fresh": arguments.fresh})
-    if state.outcomes:
-        console.print(f"resumed: {len(state.passed)} of {len(state.wanted)} tests have passed with the same sources")
-    _before(path).write_text(json.dumps({"passed": sorted(state.passed), "seconds": state.seconds}))
+    passed = state.of("passed")
+    if state.tests:
+        console.print(f"resumed: {len(passed)} of {len(state.tests)} tests have passed with the same sources")
+    _before(path).write_text(json.dumps({"passed": passed, "seconds": state.seconds}))
     # Each worker gets one test at a time, so that the longest begin first.
     words = ["-q", "-n", str(arguments.jobs), "--dist", "load", "--maxschedchunk", "1", "--durations", "10"]
     plugin = ["-p", "raycaster.verif.everything", "--outcomes", str(path)]
@@ -236,13 +224,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:  # pytest gets it too
         process.wait()
         code = 130
-    state = State(path)
-    figures = state.figures()
+    figures = State(path).figures()
     keep(arguments, figures, {"jobs": arguments.jobs}, provenance)
-    failed, skipped = len(figures["failed"]), sum(figures["skipped"].values())
-    console.print(
-        f"{figures['passed']} of {figures['tests']} tests passed, {failed} failed, {skipped} skipped, "
-        f"{figures['not_run']} not run; {figures['wall_seconds']} s in {figures['runs']} runs",
-    )
+    console.print(f"{_said(figures)}; {figures['wall_seconds']} s in {figures['runs']} runs")
     # Pytest's exit code 5: no test is left.
-    return 0 if code == 5 and state.wanted == state.passed else code
+    return 0 if code == 5 and figures["passed"] == figures["tests"] else code

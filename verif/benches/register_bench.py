@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: effects of the registers on the picture; the traffic bench checks every word that they return."""
+"""cocotb: effects of the registers on the picture and on the interrupt; the traffic bench checks every answer."""
 
 from __future__ import annotations
 
@@ -105,3 +105,21 @@ async def run_and_reflections(bench: HierarchyObject) -> None:
         if asked < 2:
             await harness.bus.commit(run=0, reflections=asked)
             harness.expect_picture(await harness.monitor.frame(), black, "run = 0")
+
+
+@cocotb.test()
+async def start_screen_interrupts(bench: HierarchyObject) -> None:
+    """The interrupt rises at StartScreen if enabled and falls when 1 is written. The traffic bench checks its clock."""
+    harness = Harness(bench)
+    bus = harness.bus
+    await harness.reset()
+    for enabled in (1, 0):
+        await bus.write("irq_enable", start_screen=enabled)
+        assert (await bus.read("irq_pending"))["start_screen"] == 0
+        await harness.monitor.frame()
+        assert (await bus.read("irq_pending"))["start_screen"] == 1, "pending is set whether or not it is enabled"
+        assert harness.bench.irq.value == enabled
+        for cleared in (0, 1):
+            await bus.write("irq_pending", start_screen=cleared)
+            assert (await bus.read("irq_pending"))["start_screen"] == 1 - cleared, "only writing 1 clears it"
+            assert harness.bench.irq.value == (enabled and not cleared)

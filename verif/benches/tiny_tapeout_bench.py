@@ -5,19 +5,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import cocotb
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import ClockCycles
 
 from raycaster.configuration import Configuration
-from raycaster.golden.engines import model_of
-from raycaster.golden.picture import count_wrong, shown
-from raycaster.scene import load_scene
 from raycaster.sim import simulator
-from raycaster.sim.job import Job
-from raycaster.sim.monitor import Monitor
+from raycaster.sim.harness import Viewer
 
 RESET_CLOCKS = 10
 
@@ -45,11 +40,8 @@ class PinsBench(simulator.Bench):
 @cocotb.test()
 async def one_frame(bench: HierarchyObject) -> None:
     """The first whole frame after reset shows the job's scene; unused pins are inputs."""
-    job = Job.from_environment()
-    config = job.configuration
-    scene = load_scene(job.scene)
-    monitor = Monitor(bench, config, blanking=False)
-    pins: Any = bench
+    viewer = Viewer(bench, blanking=False)
+    pins, monitor = viewer.bench, viewer.monitor
     pins.ena.value = 1
     pins.ui_in.value = 0b10100101
     pins.uio_in.value = 0b01011010
@@ -57,10 +49,7 @@ async def one_frame(bench: HierarchyObject) -> None:
     await ClockCycles(pins.clk, RESET_CLOCKS)
     monitor.forget()
     pins.rst_n.value = 1
-    frame = await monitor.frame()
-    expected = shown(model_of(config).render(scene, config.screen_geometry, job.reflections), config)
-    wrong = count_wrong(frame, expected)
-    assert wrong == 0, f"{wrong} of {expected[..., 0].size} pixels are wrong"
-    assert expected.any(), "the expected picture is black"
+    await viewer.expect(viewer.scene, viewer.reflections, "the first frame")
+    assert viewer.golden(viewer.scene, viewer.reflections).any(), "the expected picture is black"
     assert int(pins.uio_oe.value) == 0, "unused pins are driven"
     monitor.check_pins()

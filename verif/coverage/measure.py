@@ -101,7 +101,6 @@ class Run:
 BENCHES = (
     # With culling it meets the row budget even with two reflections.
     Run("verif.benches.register_bench", find_scene("floor"), 2),
-    Run("verif.benches.motion_bench", find_scene("floor"), 2),
     Run("verif.benches.underrun_bench"),
     Run("verif.coverage.bench"),
 )

@@ -6,6 +6,7 @@ The timing is checked against the standard, and every pixel is compared with the
 
 from __future__ import annotations
 
+import contextlib
 import re
 import subprocess
 import sys
@@ -49,7 +50,7 @@ def watch(
     buttons: int = 0,
     late_ns: int = 0,
 ) -> list[np.ndarray]:
-    """Simulate the board and return the first frames that its DVI connector sends after reset.
+    """Simulate the board and return the first frames that its DVI connector sends after reset, as `pictures` does.
 
     Args:
         board: the board.
@@ -60,9 +61,6 @@ def watch(
         simulator: one of `raycaster.sim.simulator.SIMULATORS`; only Icarus knows unknown bits.
         buttons: a bit for each button that is held all the time, in the order of `scene_player.BUTTONS`.
         late_ns: extra duration of reset.
-
-    Returns:
-        The frames, in the format of `pictures`.
 
     Raises:
         UserError: the simulator is missing.
@@ -80,15 +78,7 @@ def watch(
 
 
 def golden(design: Design, position: tuple[int, int, int] | None = None) -> np.ndarray:
-    """Render the picture that a monitor must show.
-
-    Args:
-        design: the scene and the hardware.
-        position: position of the camera, which replaces the one in the scene.
-
-    Returns:
-        uint8 (visible lines, visible pixels, 3).
-    """
+    """Render what a monitor must show, from the scene's camera or another position; uint8 (lines, pixels, 3)."""
     scene = design.scene
     if position is not None:
         scene = scene.model_copy(update={"camera": scene.camera.model_copy(update={"position": position})})
@@ -152,60 +142,48 @@ endmodule
 
 
 def symbols(wires: np.ndarray) -> np.ndarray:
-    """Split wires into symbols, aligned by the control symbols of the three channels.
-
-    Args:
-        wires: bool (4, bits), recorded while the link runs.
-
-    Returns:
-        int64 (3, pixels): blue, green, red; bit 0 was sent first.
+    """Split wires, bool (4, bits), into symbols, int64 (3, pixels): blue, green, red; bit 0 was sent first.
 
     Raises:
         VideoError: the channels have no common alignment, or the link's clock is not a tenth of the bit rate.
     """
-    starts = [_alignment(wires[channel]) for channel in range(3)]
-    if len(set(starts)) != 1:
-        raise VideoError(f"the channels' symbols start at different bits: {', '.join(map(str, starts))}")
-    whole = (wires.shape[1] - starts[0]) // SYMBOL_BITS * SYMBOL_BITS
-    cut = wires[:, starts[0] : starts[0] + whole].reshape(len(_CHANNELS), -1, SYMBOL_BITS)
-    if (cut[3] != (np.arange(SYMBOL_BITS) < SYMBOL_BITS // 2)).any():
-        raise VideoError("the link's clock is not five ones and five zeros per symbol")
-    return cut[:3] @ (1 << np.arange(SYMBOL_BITS))
 
+    def words(start: int) -> np.ndarray:
+        whole = (wires.shape[1] - start) // SYMBOL_BITS * SYMBOL_BITS
+        cut = wires[:, start : start + whole].reshape(len(_CHANNELS), -1, SYMBOL_BITS)
+        return cut @ (1 << np.arange(SYMBOL_BITS))
 
-def _alignment(wire: np.ndarray) -> int:
-    """Return the only offset, 0 to 9, at which control symbols follow one another."""
-    found = []
+    # Only where symbols start, control symbols follow one another.
+    starts = [[] for _ in _CHANNELS[:3]]
     for start in range(SYMBOL_BITS):
-        whole = (len(wire) - start) // SYMBOL_BITS * SYMBOL_BITS
-        words = wire[start : start + whole].reshape(-1, SYMBOL_BITS) @ (1 << np.arange(SYMBOL_BITS))
-        control = np.isin(words, CONTROL_SYMBOLS)
-        if (control[1:] & control[:-1]).mean() > 0.05:
-            found.append(start)
-    if len(found) != 1:
-        raise VideoError(f"control symbols are found at {len(found)} offsets, expected 1")
-    return found[0]
+        control = np.isin(words(start), CONTROL_SYMBOLS)
+        for channel, found in enumerate(starts):
+            if (control[channel, 1:] & control[channel, :-1]).mean() > 0.05:
+                found.append(start)
+    for found in starts:
+        if len(found) != 1:
+            raise VideoError(f"control symbols are found at {len(found)} offsets, expected 1")
+    if starts[0] != starts[1] or starts[0] != starts[2]:
+        offsets = ", ".join(str(start) for [start] in starts)
+        raise VideoError(f"the channels' symbols start at different bits: {offsets}")
+    *colours, clock = words(starts[0][0])
+    if (clock != (1 << SYMBOL_BITS // 2) - 1).any():
+        raise VideoError("the link's clock is not five ones and five zeros per symbol")
+    return np.array(colours)
 
 
 def pictures(words: np.ndarray, screen: Screen) -> list[np.ndarray]:
-    """Decode symbols, check the syncs and the blanking of every pixel, and return all whole frames.
+    """Decode `symbols`, check the syncs and the blanking of every pixel, and return all whole frames.
 
-    Args:
-        words: the symbols, in the format of `symbols`.
-        screen: the standard.
-
-    Returns:
-        For each frame uint8 (visible lines, visible pixels, 3).
+    Each frame is uint8 (visible lines, visible pixels, 3).
 
     Raises:
         VideoError: an invalid symbol, channels that disagree, or a departure from the standard.
     """
     table = np.full((1 << SYMBOL_BITS, 3), -1, dtype=np.int64)
     for symbol in range(1 << SYMBOL_BITS):
-        try:
+        with contextlib.suppress(ValueError):
             table[symbol] = decode(symbol)
-        except ValueError:
-            continue
     visible, data, control = np.moveaxis(table[words], -1, 0)
     if (visible < 0).any():
         channel, pixel = np.argwhere(visible < 0)[0]
@@ -214,36 +192,22 @@ def pictures(words: np.ndarray, screen: Screen) -> list[np.ndarray]:
         raise VideoError("the channels are not in blanking together")
     if control[1:].any():
         raise VideoError("green or red carries control bits")
-    hs, vs = _held(control[0] & 1, visible[0]), _held(control[0] >> 1, visible[0])
+    # A sync signal keeps its last level while picture data is sent.
+    last = np.maximum.accumulate(np.where(visible[0] == 0, np.arange(words.shape[1]), 0))
+    hs, vs = (control[0] & 1)[last], (control[0] >> 1)[last]
     samples = np.stack([hs, vs, visible[0], np.zeros_like(hs)])
     colours = np.unpackbits(data[::-1].astype(np.uint8)[..., None], axis=-1)  # red, green, blue
     bits = np.concatenate([samples.T, np.moveaxis(colours, 0, 1).reshape(len(hs), -1)], axis=1)
-    line_starts = _leading_edges(hs, screen.horizontal.active_high)
-    frame_starts = _leading_edges(vs, screen.vertical.active_high)
-    lines = [_line(bits[start:end]) for start, end in pairwise(line_starts)]
-    found = []
-    for start in frame_starts:
-        [first] = np.flatnonzero(line_starts == start)
-        frame = lines[first : first + screen.vertical.total]
-        if len(frame) == screen.vertical.total:
-            found.append(decode_frame(frame, screen, 8))
-    return found
-
-
-def _held(levels: np.ndarray, visible: np.ndarray) -> np.ndarray:
-    """Return a sync signal, which keeps its last level while picture data is sent."""
-    last = np.maximum.accumulate(np.where(visible == 0, np.arange(len(levels)), 0))
-    return levels[last]
-
-
-def _leading_edges(levels: np.ndarray, active_high: bool) -> np.ndarray:
-    active = levels == int(active_high)
-    return np.flatnonzero(active[1:] & ~active[:-1]) + 1
-
-
-def _line(bits: np.ndarray) -> Line:
-    """Return a line in the format of the bench of the VGA output, with the last sample first."""
-    return Line("".join(map(str, bits[::-1].reshape(-1))), len(bits), 0)
+    line_starts, frame_starts = (
+        np.flatnonzero(np.diff((levels == int(timing.active_high)).astype(int)) > 0) + 1
+        for levels, timing in ((hs, screen.horizontal), (vs, screen.vertical))
+    )
+    # In the format of the bench of the VGA output, which has the last sample first.
+    cut = [bits[start:end] for start, end in pairwise(line_starts)]
+    lines = [Line("".join(map(str, line[::-1].reshape(-1))), len(line), 0) for line in cut]
+    firsts = [int(np.flatnonzero(line_starts == start)[0]) for start in frame_starts]
+    frames = [lines[first : first + screen.vertical.total] for first in firsts]
+    return [decode_frame(frame, screen, 8) for frame in frames if len(frame) == screen.vertical.total]
 
 
 def command_parser() -> CommandParser:

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: random or stiff scenes, a frame each; every pixel is compared with the golden model."""
+"""cocotb: random, stiff or given scenes, a frame each; every pixel is compared with the golden model."""
 
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import cocotb
@@ -11,14 +12,17 @@ from cocotb.handle import HierarchyObject
 
 from raycaster.golden.catalogue import catalogue
 from raycaster.golden.picture import count_wrong
-from raycaster.scene import Scene, dump_scene
+from raycaster.scene import Scene, dump_scene, load_scene
 from raycaster.sim.harness import Harness
 from raycaster.verif.random_scenes import random_scene
 
 
 @cocotb.test()
 async def soak(bench: HierarchyObject) -> None:
-    """Show the scenes of the job's seeds; write a line of JSON for each, and failing scenes, whole and shrunk."""
+    """Show the scenes of the job's seeds; write a line of JSON for each, and failing scenes, whole and shrunk.
+
+    If the job has scene files, separated as in PATH, seeds are indices into them.
+    """
     harness = Harness(bench)
     job, configuration = harness.job, harness.configuration
     output = Path(job.output)
@@ -28,6 +32,8 @@ async def soak(bench: HierarchyObject) -> None:
         for seed in job.seeds:
             if job.stiff:
                 scene = cases[seed].scene.model_copy(update={"reflections": configuration.reflections})
+            elif job.scene:
+                scene = load_scene(job.scene.split(os.pathsep)[seed], configuration.capacity)
             else:
                 scene = random_scene(seed, configuration.rectangles, configuration.reflections, configuration.looks)
             result = {"seed": seed, "title": scene.title} | await show(harness, scene)
@@ -44,8 +50,7 @@ async def soak(bench: HierarchyObject) -> None:
 
 async def show(harness: Harness, scene: Scene) -> dict[str, int]:
     """Show one frame of a scene, right after the previous frame, and count its wrong pixels."""
-    await harness.bus.load_scene(scene)
-    await harness.bus.commit(reflections=scene.reflections)
+    await harness.load(scene, scene.reflections)
     frame = await harness.monitor.frame()
     golden, perfect = harness.golden_and_exact(scene, scene.reflections)
     return {

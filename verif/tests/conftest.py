@@ -23,6 +23,7 @@ from raycaster.convert import provenance
 from raycaster.hdl.elaboration import forgetting
 from raycaster.hdl.leaf import Leaf
 from raycaster.options import run_command
+from raycaster.output import MARK
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import MODELS_VARIABLE, build_model, find_tool, run_bench
 from raycaster.verif.recording import RECORD_VARIABLE, record_test
@@ -140,18 +141,13 @@ def bench(output: Path) -> Bench:
 
 
 @pytest.fixture
-def refuses(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
-    """Return a function that runs a command, which must fail with one line on standard error, and returns the line."""
+def refuses() -> Callable[..., str]:
+    """Return a function that calls a command's function with options, which must fail with one line, and returns it."""
 
-    def refused(main: Callable[[], int | None], *options: str) -> str:
-        monkeypatch.setattr("sys.argv", ["command", *options])
-        with pytest.raises(SystemExit) as ended:
-            run_command(main)
-        assert ended.value.code == 2
-        error = capsys.readouterr().err
-        assert error.startswith("error: ")
-        assert error.count("\n") == 1
-        return error
+    def refused(main: Callable[..., int | None], *options: str) -> str:
+        done = called(*options, cwd=Path.cwd(), program=lambda words: main(words) if words else main())
+        assert (done.returncode, done.stderr[:7], done.stderr.count("\n")) == (2, "error: ", 1), done
+        return done.stderr
 
     return refused
 
@@ -167,6 +163,24 @@ def called(*words: str, cwd: Path, program: Callable[[list[str]], int | None] = 
     ):
         run_command(lambda: program(list(words)))
     return subprocess.CompletedProcess(words, ended.value.code, out.getvalue(), err.getvalue())
+
+
+def refusal(directory: Path, *words: str, late: bool = False) -> str:
+    """Run a command in a directory, where it must fail with one line and change no file, and return the line.
+
+    Work may have been announced if the mistake shows `late`.
+    """
+
+    def files() -> dict[Path, int]:
+        return {path: path.stat().st_mtime_ns for path in directory.rglob("*") if path.is_file() and path.name != MARK}
+
+    before = files()
+    done = called(*words, cwd=directory)
+    *announced, error, end = (done.stdout + done.stderr).split("\n")
+    assert (done.returncode, bool(announced), end) == (2, late, ""), done
+    assert error.startswith("error: ") and error.isprintable(), error
+    assert files() == before
+    return error.removeprefix("error: ")
 
 
 def run_tool(directory: Path, *command: str, **variables: str) -> subprocess.CompletedProcess[str]:

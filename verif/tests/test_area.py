@@ -226,22 +226,6 @@ def test_the_command(tmp_path):
     assert [area["multipliers"] for area in published["units"].values()] == [4, 2]
 
 
-@pytest.mark.parametrize(
-    ("options", "complaint"),
-    [
-        (("--family", "ice40"), "error: family: expected one of ecp5, cycloneive, cyclonev, got ice40"),
-        (("--units", "7"), "error: units: 7 does not divide the 320 columns"),
-        (("--features", "--engine", "beam"), "error: features: counts a fixed set of designs"),
-    ],
-)
-def test_bad_options_get_one_line(tmp_path, options, complaint):
-    done = called("area", *options, cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.startswith(complaint)
-    assert done.stderr.count("\n") == 1
-    assert not any(tmp_path.iterdir())
-
-
 def test_a_design_is_counted_once(tmp_path, monkeypatch):
     """A kept count needs no Yosys; other designs, families and modules are counted separately."""
     monkeypatch.chdir(tmp_path)

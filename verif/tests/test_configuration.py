@@ -1,19 +1,22 @@
 # SPDX-License-Identifier: MIT
-"""Properties of every configuration that options can make."""
+"""Configurations: properties of all that options can make, the numbers that engines choose, and refused options."""
 
 from __future__ import annotations
 
 import argparse
 import shlex
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 from generated import ODD, examples, options
 from hypothesis import given
 
-from raycaster.configuration import OPTIONS, Configuration, ConfigurationError, configure
+from raycaster.configuration import MOST_REFLECTIONS, OPTIONS, Configuration, ConfigurationError, configure
 from raycaster.engines import ENGINES
+from raycaster.engines.beam import blanking_left
 from raycaster.options import CommandParser, add_configuration_options, as_options, command_line, given_options
+from raycaster.screens import BEAM_SCREENS
 
 
 def made(chosen) -> Configuration | None:
@@ -29,23 +32,31 @@ def parsed(parser: argparse.ArgumentParser, words: list[str]) -> Configuration:
     return configure(**given_options(parser.parse_args(words)))
 
 
-@examples(150)
-@given(options(odd=True))
-def test_options_make_a_consistent_design_or_a_one_line_error(chosen):
-    config = made(chosen)
-    odd = [name for name, value in ODD.items() if chosen.get(name) == value]
-    assert config is None or not odd
-    if config is None:
-        return
-    screen = config.screen_geometry
-    assert {name: getattr(config, name) for name in chosen if chosen[name] != "auto"}.items() <= chosen.items()
-    assert None not in [getattr(config, name) for name in OPTIONS]
-    assert config.units * config.groups == screen.columns
-    assert config.quotient_bits == 9 + config.fraction_bits
-    # A row needs its last cycle for the hand-over; the beam engine keeps pace with the pixels.
-    if config.engine != "beam" and not config.allow_underrun:
-        assert config.groups * config.group_cycles < screen.row_cycles
-    assert config.divider_bits in ((1, 2, 3) if config.engine == "seed" else (0,))
+def test_options_make_a_consistent_design_or_a_one_line_error():
+    """Every engine gets enough designs, so that the other properties are not tested on few of them."""
+    engines = Counter()
+
+    @examples(200)
+    @given(options(odd=True))
+    def check(chosen):
+        config = made(chosen)
+        engines[config and config.engine] += 1
+        odd = [name for name, value in ODD.items() if chosen.get(name) == value]
+        assert config is None or not odd
+        if config is None:
+            return
+        screen = config.screen_geometry
+        assert {name: getattr(config, name) for name in chosen if chosen[name] != "auto"}.items() <= chosen.items()
+        assert None not in [getattr(config, name) for name in OPTIONS]
+        assert config.units * config.groups == screen.columns
+        assert config.quotient_bits == 9 + config.fraction_bits
+        # A row needs its last cycle for the hand-over; the beam engine keeps pace with the pixels.
+        if config.engine != "beam" and not config.allow_underrun:
+            assert config.groups * config.group_cycles < screen.row_cycles
+        assert config.divider_bits in ((1, 2, 3) if config.engine == "seed" else (0,))
+
+    check()
+    assert all(engines[engine] >= 10 for engine in (*ENGINES, None)), engines
 
 
 @examples(60)
@@ -81,15 +92,153 @@ def test_names_are_unique(chosen, other):
         assert (base.name == one.name) == (base == one), (base, one)
 
 
-def test_drawn_options_reach_every_engine():
-    """Every engine gets enough designs, so that the other properties are not tested on few of them."""
-    engines = Counter()
+# The exact engine ----------------------------------------------------------------------------------------------------
 
-    @examples(200)
-    @given(options(odd=True))
-    def draw(chosen):
-        config = made(chosen)
-        engines[config.engine if config else None] += 1
 
-    draw()
-    assert all(engines[engine] >= 10 for engine in (*ENGINES, None)), engines
+@pytest.mark.parametrize(
+    ("options", "units", "cycles"),
+    [
+        ({"reflections": 0}, 4, 20),
+        ({}, 4, 36),
+        ({"reflections": 2}, 8, 52),
+        ({"rectangles": 32}, 8, 76),
+        ({"screen": "tiny"}, 4, 36),
+        ({"units": 16}, 16, 36),
+        ({"patterns": True}, 5, 48),
+        ({"patterns": True, "reflections": 0}, 4, 26),
+        ({"patterns": True, "reflections": 2}, 8, 70),
+    ],
+)
+def test_as_few_units_as_meet_the_row_budget(options, units, cycles):
+    config = configure(engine="exact", **options)
+    assert (config.units, config.group_cycles) == (units, cycles)
+    assert config.groups * config.group_cycles < config.screen_geometry.row_cycles
+
+
+# The beam engine -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("options", "shown"),
+    [
+        ({}, (640, 480, 2, 1, 25_000_000)),
+        ({"scale": 1}, (320, 240, 1, 2, 25_000_000)),
+        ({"rows": 200}, (640, 400, 2, 1, 25_000_000)),
+        ({"rows": 180}, (1280, 720, 4, 1, 74_250_000)),
+        ({"rows": 180, "scale": 1}, (320, 180, 1, 4, 74_250_000)),
+        ({"screen": "tiny"}, (128, 96, 2, 1, 25_000_000)),
+        ({"screen": "play"}, (320, 240, 1, 1, 6_120_000)),
+        ({"rows": 180, "scale": 3}, (960, 540, 3, 2, 74_250_000)),
+        ({"rows": 180, "scale": 6}, (1920, 1080, 6, 1, 74_250_000)),
+        ({"rows": 180, "scale": 6, "pixels": 2}, (1920, 1080, 6, 1, 74_250_000)),
+        ({"rows": 180, "pixels": 2}, (1280, 720, 4, 1, 37_125_000)),
+        ({"pixels": 2}, (640, 480, 2, 1, 12_500_000)),
+    ],
+)
+def test_a_beam_is_as_fine_as_its_monitor(options, shown):
+    config = configure(engine="beam", **options)
+    screen = config.screen_geometry
+    assert (screen.columns, screen.rows, screen.scale, screen.doubling, screen.clock_hz) == shown
+    assert (config.scale, config.units, config.group_cycles) == (screen.scale, options.get("pixels", 1), 1)
+
+
+@pytest.mark.parametrize(("pixels", "rate"), [(1, 30), (2, 60)])
+def test_full_hd_at_a_clock_that_chips_reach(pixels, rate):
+    """The timing is CEA-861's: 2200 x 1125, both syncs high; two pixels per clock double the frame rate."""
+    screen = configure(engine="beam", rows=180, scale=6, pixels=pixels).screen_geometry
+    lines = [(line.visible, line.front, line.sync, line.back) for line in (screen.horizontal, screen.vertical)]
+    assert lines == [(1920, 88, 44, 148), (1080, 4, 5, 36)]
+    assert screen.horizontal.active_high and screen.vertical.active_high
+    assert screen.clock_hz == rate * screen.frame_cycles == rate * 2200 * 1125 // pixels
+
+
+@pytest.mark.parametrize("place", BEAM_SCREENS, ids=str)
+@pytest.mark.parametrize("rectangles", [1, 2, 12, 32])
+@pytest.mark.parametrize("reflections", range(MOST_REFLECTIONS + 1))
+def test_every_row_is_set_up_in_its_blanking(place, rectangles, reflections):
+    """The previous line's last column is out, and all rectangles are loaded, before the first column starts."""
+    screen, rows = place
+    size = {"screen": screen, "rows": rows, "rectangles": rectangles, "reflections": reflections}
+    if screen == "vga" or rectangles < 32 or reflections < 3:
+        assert blanking_left(configure(engine="beam", **size)) >= 0
+        return
+    with pytest.raises(ConfigurationError, match=r"^rectangles: with 32 of them, [34] reflections, .*either$"):
+        configure(engine="beam", **size)
+
+
+LOOKS = {"turn": True, "materials": True, "patterns": True}
+PAIRS = r"^rectangles: .* at two pixels per clock, the .*PIXELS=1$"
+
+
+@pytest.mark.parametrize(
+    ("options", "refused"),
+    [
+        # A dozen rectangles with all features fit.
+        ({"reflections": 4, **LOOKS}, None),
+        ({"rows": 180, "reflections": 4, **LOOKS}, None),
+        ({"screen": "tiny", "reflections": 2, **LOOKS}, None),
+        ({"screen": "play", "reflections": 1, **LOOKS}, None),
+        (
+            {"screen": "play", "rectangles": 32, "reflections": 2, "turn": True},
+            r"^rectangles: with 32 of them, 2 reflections .* is 31 cycles short of a line's",
+        ),
+        # Two pixels per clock share one set-up, which must fit into half the blanking.
+        ({"pixels": 2, "rows": 180, "scale": 6, "reflections": 1}, None),
+        ({"pixels": 2, "rows": 180, "scale": 6, "reflections": 2, "turn": True}, PAIRS),
+        ({"pixels": 2, "rows": 180, "scale": 6, "reflections": 1, "turn": True}, None),
+        ({"pixels": 2, "screen": "tiny", "reflections": 2, "turn": True, "rectangles": 8}, None),
+        ({"pixels": 2, "screen": "play", "reflections": 1}, None),
+        ({"pixels": 2, "screen": "play", "reflections": 2}, PAIRS),
+    ],
+)
+def test_more_to_set_up(options, refused):
+    """A turned camera and two pixels per clock must fit into the blanking too."""
+    if refused is None:
+        assert blanking_left(configure(engine="beam", **options)) >= 0
+        return
+    with pytest.raises(ConfigurationError, match=refused):
+        configure(engine="beam", **options)
+
+
+@pytest.mark.parametrize("part", ["visible", "front", "sync", "back"])
+def test_two_pixels_a_clock_take_an_even_line(part, monkeypatch):
+    screen = BEAM_SCREENS["play", 240]
+    line = replace(screen.horizontal, **{part: getattr(screen.horizontal, part) + 1})
+    monkeypatch.setitem(BEAM_SCREENS, ("play", 240), replace(screen, horizontal=line))
+    said = r"^pixels: 2 per clock need an even width and blanking, which the play screen"
+    with pytest.raises(ConfigurationError, match=said):
+        configure(engine="beam", screen="play", pixels=2)
+
+
+# Refused options -----------------------------------------------------------------------------------------------------
+
+TWICE = "^pixels: 2 per clock need one column per pixel of the monitor, "
+
+
+@pytest.mark.parametrize(
+    ("engine", "options", "complaint"),
+    [
+        ("exact", {"fraction_bits": 4}, "^fraction_bits: the exact engine has none, not 4$"),
+        ("exact", {"rounding": "nearest"}, "^rounding: the exact engine does not round; leave out nearest$"),
+        ("exact", {"divider_bits": 2}, "^divider_bits: the exact engine has no divider; leave out 2$"),
+        ("exact", {"units": 2}, "^row budget: a group of 2 columns takes 36 cycles with 12 rectangles, 1 reflections "
+         "and 1 cycles per"),
+        ("exact", {"reflections": 0, "units": 2}, "leaves it 19 .less than 3200 cycles over 160 groups.; take more "
+         "units"),
+        ("exact", {"screen": "play"}, "^screen: play needs the beam engine, ENGINE=beam, not exact$"),
+        ("exact", {"rows": 180}, "180 rows need the beam engine, ENGINE=beam$"),
+        ("seed", {"scale": 2}, "^scale: the seed engine shows 240 rows at 1, not 2; scales need the beam"),
+        ("seed", {"pixels": 2}, "^pixels: 2 per clock need the beam engine, ENGINE=beam, not seed$"),
+        ("beam", {"units": 4}, "^units: the beam engine has one per pixel of a clock, PIXELS=1, not 4$"),
+        ("beam", {"scale": 3}, "^scale: the beam engine shows 240 rows at 1 or 2, not 3$"),
+        ("beam", {"rows": 180, "scale": 8}, "^scale: the beam engine shows 180 rows at 1 or 2 or 3 or 4 or 6, not 8$"),
+        ("beam", {"fraction_bits": 1}, "^fraction_bits: the beam engine has none, not 1$"),
+        ("beam", {"pixels": 3}, "^pixels: expected 2 or less, got 3$"),
+        ("beam", {"pixels": 2, "units": 1}, "^units: the beam engine has one per pixel of a clock, PIXELS=2, not 1$"),
+        ("beam", {"pixels": 2, "scale": 1}, f"{TWICE}SCALE=2, not 1$"),
+        ("beam", {"pixels": 2, "rows": 180, "scale": 3}, f"{TWICE}SCALE=6, not 3$"),
+    ],
+)  # fmt: skip
+def test_options_that_an_engine_refuses(engine, options, complaint):
+    with pytest.raises(ConfigurationError, match=complaint):
+        configure(engine=engine, **options)

@@ -15,28 +15,22 @@ from raycaster.errors import UserError
 from raycaster.verif import everything
 
 
-class Item:
-    """A collected test."""
-
-    def __init__(self, name: str, *marks: pytest.Mark):
-        self.nodeid, self.marks, self.added, self.stash = f"verif/tests/leaves/{name}", marks, [], {}
-
-    def iter_markers(self, name: str) -> list[pytest.Mark]:
-        return [mark for mark in self.marks if mark.name == name]
-
-    def add_marker(self, mark: str) -> None:
-        self.added.append(mark)
-
-    def get_closest_marker(self, name: str) -> bool:
-        return name in self.added
+def item(name: str, *marks: pytest.Mark) -> SimpleNamespace:
+    """Return a stand-in for a collected test; `added` has the names of the marks that it gets."""
+    added = []
+    return SimpleNamespace(
+        nodeid=f"verif/tests/{name}", stash={}, added=added, add_marker=added.append,
+        get_closest_marker=lambda name: name in added,
+        iter_markers=lambda name: [mark for mark in marks if mark.name == name],
+    )  # fmt: skip
 
 
 def collected(mark: pytest.MarkDecorator, *arguments: str) -> tuple[list[bool], list[bool]]:
     """Return whether each of three parameter sets and an unmarked test is slow, and whether MyHDL also simulates it."""
     sets = ("a-1", "a-2", "b-1")
-    items = [*(Item(f"test_a.py::test_b[{one}]", mark.mark) for one in sets), Item("test_a.py::test_c")]
+    items = [*(item(f"leaves/test_a.py::test_b[{one}]", mark.mark) for one in sets), item("leaves/test_a.py::test_c")]
     conftest.pytest_collection_modifyitems(SimpleNamespace(args=arguments), items)
-    return [item.added == ["slow"] for item in items], [item.stash[conftest.WITH_MYHDL] for item in items]
+    return [one.added == ["slow"] for one in items], [one.stash[conftest.WITH_MYHDL] for one in items]
 
 
 @pytest.mark.parametrize(
@@ -52,9 +46,7 @@ def collected(mark: pytest.MarkDecorator, *arguments: str) -> tuple[list[bool], 
 def test_a_mark_is_a_prefix_of_parameter_sets(mark, slow, in_myhdl):
     """MyHDL simulates the last quick set of a leaf test; other tests decide for themselves."""
     assert collected(mark) == (slow, in_myhdl)
-    others = [Item("test_b.py::test_b[1]"), Item("test_b.py::test_b[2]")]
-    for other in others:
-        other.nodeid = other.nodeid.replace("leaves/", "")
+    others = [item("test_b.py::test_b[1]"), item("test_b.py::test_b[2]")]
     conftest.pytest_collection_modifyitems(SimpleNamespace(args=()), others)
     assert all(other.stash[conftest.WITH_MYHDL] for other in others)
 
@@ -145,11 +137,11 @@ def test_results_of_an_interrupted_run_are_kept(tmp_path):
     state = everything.State(tmp_path / "state")
     begin = {"sources": "a", "files": {"x": "b", "y": "c"}, "fresh": False}
     state.add(begin)
-    state.add({"wanted": ["x", "y"]})
+    state.add(*({"test": test, "outcome": "not_run", "seconds": 0} for test in ("x", "y")))
     state.add({"test": "x", "outcome": "passed", "reason": "", "seconds": 2.0, "at": 3.0})
     with (tmp_path / "state").open("a") as file:
         file.write('{"test": "y", "out')
     state = everything.State(tmp_path / "state")
     assert [state.figures()[name] for name in ("tests", "passed", "not_run", "wall_seconds")] == [2, 1, 1, 3]
     state.add(begin | {"fresh": True})
-    assert (state.passed, state.seconds) == (set(), {"x": 2})
+    assert (state.tests, state.seconds) == ({}, {"x": 2})

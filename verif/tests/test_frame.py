@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import BUILD, ROOT, SMALL_SCENE, Bench, called
+from conftest import SMALL_SCENE, Bench
 from PIL import Image
 
 from raycaster.configuration import Configuration, configure
@@ -47,15 +48,16 @@ def test_full_size(bench: Bench, engine, scene):
 
 @pytest.mark.slow_sets("beam", "seed")
 @pytest.mark.parametrize("engine", ENGINES)
-def test_scenes_with_looks(bench: Bench, engine):
-    """Every scene that needs more than the default design, on the tiny screen, drawn by one design per engine."""
-    scenes = [path for path in packaged_for({"engine": engine}) if path.stem not in PLAIN]
-    assert len(scenes) >= (2 if engine == "seed" else 8)
+def test_every_scene(bench: Bench, engine):
+    """Every packaged scene on the tiny screen, edge cases included, drawn by one design per engine."""
+    scenes = packaged_for({"engine": engine})
+    assert {"matte", "corners", "degenerate", "facing_mirrors"} <= {path.stem for path in scenes}
+    assert len(scenes) - len(PLAIN) >= (2 if engine == "seed" else 8)
     # The fewest units that meet the row budget compile fastest.
     size = {"units": 16} if engine == "seed" else {}
     looks = dict.fromkeys(ENGINES[engine].looks, True)
-    for scene in scenes:
-        drawn(bench, configure(engine=engine, screen="tiny", reflections=2, **looks, **size), scene)
+    design = configure(engine=engine, screen="tiny", reflections=2, **looks, **size)
+    bench("verif.soak.bench", design, "verilator", os.pathsep.join(map(str, scenes)), seeds=tuple(range(len(scenes))))
 
 
 @pytest.mark.slow
@@ -74,20 +76,6 @@ def test_full_size_beam(bench: Bench, rows, scale, pixels, shown):
     coarse = ExactModel().render(load_scene(scene), configure(engine="beam", rows=rows, scale=1).screen_geometry)
     step = design.screen_geometry.horizontal.visible // 320
     assert np.array_equal(np.asarray(Image.open(directory / "frame.png"))[::step, ::step], coarse)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("engine", ENGINES)
-def test_tiny_in_icarus(engine):
-    """The command draws the tiny screen in Icarus, with zero, one and two reflections and with edge cases."""
-    build = BUILD / "test" / f"tiny_in_icarus_{engine}"
-    names = ("matte", "corners", "degenerate", "facing_mirrors")
-    options = ("--engine", engine, "--screen", "tiny", "--simulator", "icarus", "--build", str(build))
-    done = called("sim", *options, *(str(PLAIN[name]) for name in names), cwd=ROOT)
-    assert not done.returncode, done.stderr
-    for name in names:
-        result = json.loads((build / f"sim-{engine}-tiny" / name / "result.json").read_text())
-        assert (result["pixels"], result["wrong_vs_golden"]) == (128 * 96, 0)
 
 
 @pytest.mark.slow_sets(

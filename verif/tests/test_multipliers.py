@@ -6,7 +6,6 @@ from __future__ import annotations
 import json
 from collections import Counter
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -87,28 +86,7 @@ endmodule
 """
 
 
-@pytest.fixture
-def leaf(tmp_path) -> Leaf:
-    """The products as a netlist, whose JSON is `made.json`."""
-    inputs = {"clk": 1, "enable": 1, "reset": 1, "a": 10, "b": 9}
-    leaf = Leaf(
-        products,
-        lambda: {name: bit() if width == 1 else signed(width) for name, width in (inputs | OUTPUTS).items()},
-        tmp_path,
-    )
-    run_yosys(tmp_path, "make", ["read_verilog products.v", "synth_ecp5 -top products -json made.json"])
-    for name, text in {"cells": cell_models(LIBRARIES["ecp5"], find_yosys() / "ecp5"), "model": MODEL}.items():
-        (tmp_path / f"{name}.v").write_text(text)
-    leaf.verilog = [tmp_path / f"{name}.v" for name in ("netlist", "model", "cells")]
-    return leaf
-
-
-def cells_of(made: Path) -> dict[str, Any]:
-    """Return the netlist's cells by name."""
-    return json.loads(made.read_text())["modules"]["products"]["cells"]
-
-
-def check(leaf: Leaf, made: Path) -> None:
+def simulate(leaf: Leaf, made: Path) -> None:
     """Compare the netlist's outputs with those of MyHDL."""
     run_yosys(made.parent, "write", [f"read_json {made.name}", "write_verilog -noattr -noexpr netlist.v"])
     random = np.random.default_rng(seed())
@@ -117,20 +95,29 @@ def check(leaf: Leaf, made: Path) -> None:
     leaf.run_both([{"enable": 1, "reset": 1}] * 3 + stimulus, settled=3)
 
 
-def test_products_in_the_multipliers_registers(leaf, tmp_path):
-    """Plain registers that alone read a product, plain and narrow, move into the multiplier; no output changes."""
+def test_products_in_the_multipliers_registers(tmp_path):
+    """Plain registers that alone read a product, plain and narrow, move into the multiplier; no output changes. A
+    product that is registered in the fabric too arrives a cycle late, so the model has registers."""
+    widths = {"clk": 1, "enable": 1, "reset": 1, "a": 10, "b": 9} | OUTPUTS
+
+    def ports() -> dict[str, object]:
+        return {name: bit() if width == 1 else signed(width) for name, width in widths.items()}
+
+    leaf = Leaf(products, ports, tmp_path)
     made = tmp_path / "made.json"
-    check(leaf, made)
-    before = Counter(cell["type"] for cell in cells_of(made).values())
+    run_yosys(tmp_path, "make", ["read_verilog products.v", f"synth_ecp5 -top products -json {made.name}"])
+    for name, text in {"cells": cell_models(LIBRARIES["ecp5"], find_yosys() / "ecp5"), "model": MODEL}.items():
+        (tmp_path / f"{name}.v").write_text(text)
+    leaf.verilog = [tmp_path / f"{name}.v" for name in ("netlist", "model", "cells")]
+
+    def cells() -> Counter:
+        return Counter(cell["type"] for cell in json.loads(made.read_text())["modules"]["products"]["cells"].values())
+
+    before = cells()
     assert register_products(made) == 2
-    after = Counter(cell["type"] for cell in cells_of(made).values())
-    assert before - after == Counter(TRELLIS_FF=OUTPUTS["plain"] + OUTPUTS["narrow"]), repeat()
-    check(leaf, made)
+    assert before - cells() == Counter(TRELLIS_FF=OUTPUTS["plain"] + OUTPUTS["narrow"]), repeat()
+    simulate(leaf, made)
 
-
-def test_the_model_has_registers(leaf, tmp_path):
-    """A product registered in the multiplier and again in the fabric arrives a cycle late."""
-    made = tmp_path / "made.json"
     design = json.loads(made.read_text())
     module = design["modules"]["products"]
     [clock] = module["ports"]["clk"]["bits"]
@@ -139,4 +126,4 @@ def test_the_model_has_registers(leaf, tmp_path):
             connect_register(cell, clock)
     made.write_text(json.dumps(design))
     with pytest.raises(AssertionError, match="Verilog"):
-        check(leaf, made)
+        simulate(leaf, made)

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""`make sim` from outside: its outputs, its exit codes, and a one-line error for each mistake."""
+"""`make sim` from outside: its outputs and its exit codes."""
 
 from __future__ import annotations
 
 import json
 import re
-import shutil
-import subprocess
 import threading
 from dataclasses import replace
 from pathlib import Path
@@ -33,8 +31,11 @@ SMALL = configure(screen="tiny", units=8, rectangles=3)
 SMALL_OPTIONS = (SMALL_SCENE, "--screen", "tiny", "--units", 8, "--rectangles", 3, "--simulator", "icarus")
 
 
-def _sim(*arguments: object, build: Path) -> subprocess.CompletedProcess[str]:
-    return called("sim", "--build", str(build), *map(str, arguments), cwd=ROOT)
+def _sim(*arguments: object, build: Path) -> str:
+    """Run the command, which must succeed, and return its output."""
+    ran = called("sim", "--build", str(build), *map(str, SMALL_OPTIONS + arguments), cwd=ROOT)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    return ran.stdout
 
 
 @pytest.fixture
@@ -43,13 +44,10 @@ def build(tmp_path: Path) -> Path:
     return tmp_path / "build"
 
 
-def test_one_scene(build, monkeypatch):
-    """The run writes pictures, results and a table, and its exit code is 0."""
+def test_one_scene_and_two(build, tmp_path, monkeypatch):
+    """The run writes pictures, results and a table; with waveforms, it names their file; a sheet shows both scenes."""
     monkeypatch.delenv(MODELS_VARIABLE)  # so that no built model is found
-    first = _sim(*SMALL_OPTIONS, build=build)
-    assert first.returncode == 0, first.stdout + first.stderr
-    line = f"1 scene, 0 of 12,288 pixels wrong; picture: {build / 'sim-tiny' / 'small' / 'frame.png'}"
-    assert first.stdout.endswith(f"{line}\n")
+    said = _sim("--waves", build=build)
     output = build / "sim-tiny" / "small"
     for name in ("frame", "golden", "exact", "diff"):
         assert Image.open(output / f"{name}.png").size == (128, 96)
@@ -58,24 +56,21 @@ def test_one_scene(build, monkeypatch):
     assert result.keys() >= RESULT_KEYS
     assert result["wrong_vs_golden"] == 0
     assert [path.name for path in output.parent.iterdir()] == ["small"], "nothing half-written is left"
-    assert "was built before" not in first.stdout
-    assert "was built before" in _sim(*SMALL_OPTIONS, build=build).stdout
+    assert f"1 scene, 0 of 12,288 pixels wrong; picture: {output / 'frame.png'}\n" in said
+    assert (output / "waves.fst").stat().st_size > 0
+    assert str(output / "waves.fst") in said
+    assert "was built before" not in said
 
-
-@pytest.mark.slow
-def test_two_scenes(build, tmp_path):
-    """One picture shows both scenes."""
     other = tmp_path / "other.toml"
     other.write_text(SMALL_SCENE.read_text().replace("#c8c8b4", "#ff0000"))
-    ran = _sim(*SMALL_OPTIONS, other, build=build)
-    assert ran.returncode == 0, ran.stdout + ran.stderr
-    sheet = Image.open(build / "sim-tiny" / "scenes.png")
+    said = _sim(other, "--waves", build=build)
+    assert "was built before" in said
+    sheet, output = Image.open(build / "sim-tiny" / "scenes.png"), output.parent
     assert sheet.size == (2 * 320 + 8, 240)
     floors = [sheet.getpixel((left + 160, 235)) for left in (0, 328)]
-    output = build / "sim-tiny"
     assert floors == [Image.open(output / name / "frame.png").getpixel((64, 94)) for name in ("small", "other")]
     pictures = f"{output / 'scenes.png'} and {output}/*/frame.png"
-    assert ran.stdout.endswith(f"2 scenes, 0 of 24,576 pixels wrong; pictures: {pictures}\n")
+    assert f"2 scenes, 0 of 24,576 pixels wrong; pictures: {pictures}\n" in said
 
 
 NAMES = ("checkered_hall", "facing_mirrors")
@@ -97,7 +92,10 @@ def test_the_table_fits_a_terminal(engine, capsys):
     assert "…" not in "".join(lines)
     rows = [line.split() for line in lines if engine in line.split()]
     assert len(rows) == len(NAMES)
-    assert all({"12345", "1234567", "123.45"} < {*row} for row in rows)
+    for row in rows:
+        assert {"12345", "1234567", "123.45"} < {*row}
+        # The golden models of other engines are exact, so a second count would add nothing.
+        assert row.count("12345") == (2 if engine == "seed" else 1)
 
 
 def test_pictures_of_another_screen_or_engine_are_kept_apart():
@@ -138,22 +136,13 @@ def test_an_interrupted_run_leaves_the_pictures(tmp_path, monkeypatch):
     assert before.read_text() == "as it was"
 
 
-def test_waves(build):
-    """The last lines name the file of waveforms."""
-    ran = _sim(*SMALL_OPTIONS, "--waves", build=build)
-    assert ran.returncode == 0, ran.stdout + ran.stderr
-    waves = build / "sim-tiny" / "small" / "waves.fst"
-    assert waves.stat().st_size > 0
-    assert str(waves) in ran.stdout
-
-
 def test_a_wrong_pixel_fails(build):
     """If the hardware differs from the golden model, the exit code is 1 and the output says where to look."""
     (combiner,) = (path for path in convert(SMALL, build) if path.stem.startswith("colour_combiner"))
     text, faults = re.subn(r"assign pixel_word = (.+);", r"assign pixel_word = ~\1;", combiner.read_text())
     assert faults
     combiner.write_text(text)
-    ran = _sim(*SMALL_OPTIONS, build=build)
+    ran = called("sim", "--build", str(build), *map(str, SMALL_OPTIONS), cwd=ROOT)
     assert ran.returncode == 1
     assert "pixels are wrong" in ran.stdout
     assert str(build / "sim-tiny" / "small" / "sim.log") in ran.stdout
@@ -175,47 +164,6 @@ TURNED = SCENE.replace("100]", "100]\nyaw = 20")
 PATTERNED = SCENE + 'pattern = "rows"\ncolour2 = "#000000"'
 
 
-@pytest.mark.parametrize(
-    ("text", "options", "complaint"),
-    [
-        (None, (), "cannot be read"),
-        ("[camera", (), "is not TOML"),
-        ("rows = 180" + SCENE, (), "180 rows need the beam engine"),
-        (SCENE.replace("511, 0]", "511, 1]"), (), "rect"),
-        (SCENE.replace("256", "512"), (), "camera"),
-        (SCENE + SCENE[SCENE.index("[[rect") :] * 12, (), "13 rectangles, but the hardware holds 12"),
-        (SCENE, ("--units", "7"), "units: 7 does not divide"),
-        (SCENE, ("--units", "many"), "units: "),
-        (SCENE, ("--units", "4"), "row budget: "),
-        (SCENE, ("--rows", "180"), "rows: "),
-        (SCENE, ("--rounding", "up"), "rounding: "),
-        (SCENE, ("--screen", "tiny", "--rows", "240"), "rows: "),
-        (SCENE, ("--divider-bits", "4"), "divider_bits: "),
-        (SCENE, ("--fraction-bits", "9"), "fraction_bits: "),
-        (SCENE, ("--colour-bits", "0"), "colour_bits: "),
-        (SCENE, ("--reflections", "5"), "reflections: "),
-        (TURNED, ("--engine", "seed"), "the seed engine measures depth along x, so its camera cannot turn"),
-        (TURNED, ("TURN=0",), "the scene needs a camera that turns; leave TURN out"),
-        (SCENE + "mirror = 0", ("MATERIALS=0",), "the scene needs rectangles that mirror more or less than half"),
-        (PATTERNED, ("PATTERNS=0",), "the scene needs rectangles with patterns; leave PATTERNS out"),
-        (TURNED, ("FIX=all", "ENGINE=seed"), "the seed engine measures depth along x"),
-        (SCENE, ("--simulator", "questa"), "simulator: expected verilator or icarus, got questa"),
-    ],
-)
-def test_mistakes(build, tmp_path, text, options, complaint):
-    """The exit code is 2, the error is one line without a traceback, and nothing is written."""
-    scene = tmp_path / "mine.toml"
-    if text is not None:
-        scene.write_text(text)
-    ran = called("sim", "--build", str(build), str(scene), *options, cwd=ROOT)
-    assert ran.returncode == 2
-    assert complaint in ran.stderr
-    assert ran.stderr.startswith("error: ")
-    assert ran.stderr.count("\n") == 1
-    assert ran.stdout == ""
-    assert not build.exists()
-
-
 def test_a_scene_chooses_what_it_needs(tmp_path):
     def chosen(text, **options):
         path = tmp_path / "mine.toml"
@@ -231,38 +179,8 @@ def test_a_scene_chooses_what_it_needs(tmp_path):
     assert chosen(TURNED + "mirror = 0") == ("exact", ("turn", "materials"))
 
 
-def test_two_scenes_of_one_name(scenes, tmp_path):
-    """They are refused, since they would overwrite each other."""
-    shutil.copy(scenes / "floor.toml", tmp_path)
-    ran = called("sim", str(scenes / "floor.toml"), str(tmp_path / "floor.toml"), cwd=tmp_path)
-    assert ran.returncode == 2
-    assert "same file name" in ran.stderr
-
-
 def test_a_packaged_scene_from_anywhere(tmp_path):
     """A packaged scene is found by name in a directory without scenes, and outputs go to its build/."""
     ran = called("sim", "matte", "SCREEN=tiny", "ENGINE=exact", cwd=tmp_path)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert (tmp_path / "build" / "sim-exact-tiny" / "matte" / "frame.png").is_file()
-
-
-@pytest.mark.parametrize(
-    ("simulator", "present", "complaint"),
-    [
-        ("icarus", (), "Icarus Verilog is missing; install it"),
-        ("verilator", ("make", "perl"), "g++ is missing"),
-        ("verilator", ("g++", "perl"), "make is missing"),
-        ("verilator", ("g++", "make"), "perl is missing"),
-    ],
-)
-def test_missing_tools(build, tmp_path, monkeypatch, simulator, present, complaint):
-    """The error is one line that says what to install."""
-    tools = tmp_path / "bin"
-    tools.mkdir()
-    for tool in present:
-        (tools / tool).symlink_to(shutil.which(tool))
-    monkeypatch.setenv("PATH", str(tools))
-    ran = _sim("floor", "--simulator", simulator, build=build)
-    assert ran.returncode == 2
-    assert complaint in ran.stderr
-    assert ran.stderr.count("\n") == 1

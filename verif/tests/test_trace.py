@@ -1,38 +1,40 @@
 # SPDX-License-Identifier: MIT
-"""The life of a pixel: the trace finds nothing in a correct design and names the module of each planted fault."""
+"""The life of a pixel: the trace finds nothing in a correct design and names the module of each planted fault; the
+viewers' files show the recording."""
 
 from __future__ import annotations
 
 import io
+import re
 from functools import cache
 from pathlib import Path
 
 import pytest
-from conftest import BUILD, called
+from conftest import BUILD, broken, called
 from rich.console import Console
 
 from raycaster.debug.probes.engines import description_of
 from raycaster.debug.probes.ray import Place, Ray, Reading, first_difference, module_of, read
 from raycaster.debug.recorder import pixel_place, record
 from raycaster.debug.trace import difference_line, main, show
-from raycaster.debug.wave_files import View, signal_names
+from raycaster.debug.wave import write_view
 from raycaster.debug.waves import Waves
 from raycaster.design import Design, design_for
-from raycaster.engines import ENGINES
-from raycaster.errors import UserError
+from raycaster.rtl.engine.ray_sequencer import RayState
+from raycaster.sim.monitor import CLOCK_NS
 from raycaster.sim.simulator import WINDOW_BENCH, build_model, convert
 
 SCENE = Path(__file__).with_name("tall.toml")
 LOOKS = {"materials": "1", "patterns": "1", "allow_underrun": "1"}
-SIZES = {
-    name: {"units": "8" if engine.divides else "4"} if engine.line_buffered else {"scale": "1"}
-    for name, engine in ENGINES.items()
-}
 OPTIONS = {
-    name + ending: {"engine": name, **size, **looks}
-    for ending, looks in (("", {}), ("-looks", LOOKS))
-    for name, size in SIZES.items()
-} | {"exact-light": {"engine": "exact", "light": "1", "units": "8"}}
+    "seed": {"engine": "seed", "units": "8"},
+    "exact": {"engine": "exact", "units": "4"},
+    "beam": {"engine": "beam", "scale": "1"},
+    "seed-looks": {"engine": "seed", "units": "8", "culling": "0", "rounding": "nearest", **LOOKS},
+    "exact-looks": {"engine": "exact", "units": "4", **LOOKS},
+    "beam-looks": {"engine": "beam", "scale": "1", "reflections": "2", **LOOKS},
+    "exact-light": {"engine": "exact", "light": "1", "units": "8"},
+}
 LIGHT = "[light]\nposition = [20, 100, 250]\n"
 PIXEL = (48, 2)
 """Column and row of a pixel where the post hides the wall and mirrors it."""
@@ -53,18 +55,9 @@ def recorded(engine: str, directory: Path, edit: tuple[str, str, str] | None = N
     """Record the pixel's row, optionally with a text replaced in one of the design's modules."""
     sources = convert(design(engine).configuration, BUILD)
     if edit:
-        module, old, new = edit
-        copies = []
-        for source in sources:
-            text = source.read_text()
-            if source.stem == module:
-                assert old in text, f"{module} has changed: there is no {old}"
-                text = text.replace(old, new)
-            copies.append(directory / source.name)
-            copies[-1].write_text(text)
-        sources = copies
+        sources = broken(sources, directory, *edit)
     model = build_model(design(engine).configuration, "icarus", build=directory, verilog=sources, bench=WINDOW_BENCH)
-    return Waves(record(model, design(engine), (PIXEL[1], PIXEL[1]), directory / "row"))
+    return Waves(record(model, design(engine), (PIXEL[1], PIXEL[1]), directory / "rows" / "row"))
 
 
 def traced(waves: Waves, engine: str, column: int = PIXEL[0]) -> tuple[Ray, list[Reading]]:
@@ -73,23 +66,78 @@ def traced(waves: Waves, engine: str, column: int = PIXEL[0]) -> tuple[Ray, list
     return ray, read(waves, description_of(design(engine).configuration, ray.unit), ray)
 
 
-@pytest.mark.parametrize("engine", OPTIONS)
-def test_a_sound_design_has_no_difference(tmp_path, engine):
+@pytest.fixture(scope="module", params=OPTIONS)
+def sound(request, tmp_path_factory) -> tuple[str, Waves]:
+    """Return the name of a design, and a recording of it."""
+    return request.param, recorded(request.param, tmp_path_factory.mktemp("sound"))
+
+
+def test_a_sound_design_has_no_difference(sound):
     """No pixel of the row differs; both rays of the chosen pixel hit something."""
-    waves = recorded(engine, tmp_path)
+    engine, waves = sound
     for column in range(0, design(engine).configuration.screen_geometry.columns, 3):
         ray, readings = traced(waves, engine, column)
         first = first_difference(readings)
         assert first is None, difference_line(ray, first)
     ray, readings = traced(waves, engine)
-    view = View(description_of(design(engine).configuration, ray.unit).groups(ray), {}, 0, 1)
-    for name in signal_names(view):
-        assert waves.width(name), "a viewer would get signals that do not exist"
     assert [ray.winner(bounce) for bounce in (0, 1)] == [2, 1]
     quantities = {reading.probe.quantity for reading in readings}
     # A value that is never read could never be wrong.
     missing = {probe.quantity for probe in description_of(design(engine).configuration, ray.unit).probes} - quantities
     assert not missing, f"never read: {missing}"
+
+
+def test_window_has_its_rows_alone(sound):
+    """It runs from the start of the row's computation until the row has been shown."""
+    engine, waves = sound
+    config = design(engine).configuration
+    begin, end = waves.span_ns()
+    rows = 1 + config.facts.line_buffered
+    assert rows < (end - begin) / (config.screen_geometry.row_cycles * CLOCK_NS) < rows + 0.2
+    assert [path.name for path in waves.path.parent.parent.iterdir()] == ["row"], "nothing half-written is left"
+
+
+def test_viewers_show_what_there_is(sound):
+    """The waveform has every signal of the save files, with its width; groups are ordered and labels are unique; the
+    cursor is where the pixel's ray starts; states have the names from the hardware's source."""
+    engine, waves = sound
+    config, ray = design(engine).configuration, Ray(design(engine), PIXEL[1], PIXEL[0])
+    gtkwave, surfer = (path.read_text() for path in write_view(waves.path, design(engine), ray))
+
+    # Bits of a word are shown as bits or as the whole word.
+    shown = re.findall(r"^(?:\+\{.*\} |#\{.*\} (?:.*\(\d+\)|\(\d+\)))?(bench\.\S+)$", gtkwave, re.MULTILINE)
+    assert len(shown) > 30
+    for name in shown:
+        signal, _, last_bit = name.removesuffix(":0]").partition("[")
+        assert waves.width(signal) == int(last_bit or 0) + 1, name
+    added = re.findall(r"^variable_add (\S+)$", surfer, re.MULTILINE)
+    assert added == [name.partition("[")[0] for name in shown]
+    groups = re.findall(r"^divider_add (\S+)$", surfer, re.MULTILINE)
+    assert (groups[0], groups[-2:]) == ("control", ["video", "bus"])
+    labels = re.findall(r"^[+#]\{(.*?)\}", gtkwave, re.MULTILINE)
+    assert len(set(labels)) == len(labels), "two signals have one label"
+
+    [units] = re.findall(r"^\*-\d+\.\d+ (\d+) ", gtkwave, re.MULTILINE)
+    [ticks] = re.findall(r"^cursor_set (\d+)$", surfer, re.MULTILINE)
+    assert int(units) == int(ticks) * waves.tick_units
+    expected = {"ray_caster_renderer_i.place_row": ray.row, "ray_caster_renderer_i.place_column_offset": ray.offset}
+    if not config.facts.line_buffered:
+        expected = {"beam_renderer_i.row": ray.row, "beam_renderer_i.scan_next_column": 1}
+    at_cursor = int(ticks) / waves.ticks(1)
+    assert {name: waves.value(f"bench.dut.{name}", at_cursor) for name in expected} == expected
+
+    filters = re.findall(r"^\^\d+ (\S+)$", gtkwave, re.MULTILINE)
+    if not config.facts.line_buffered:
+        assert not filters, "it has no states"
+        return
+    assert waves.value(waves.find("*.ray_sequencer_i.steps_screen_to_ray"), at_cursor) == 1
+    names = [f"{getattr(RayState, name)._val} {name}" for name in RayState._names]
+    assert [Path(path).read_text().split("\n")[:-1] for path in filters] == [names]
+    assert "item_set_format ray_sequencer.state\n" in surfer
+    mapping = (waves.path.parent / ".surfer" / "mappings" / "ray_sequencer.state.txt").read_text()
+    assert mapping.startswith("Name = ray_sequencer.state\nBits = 3\n0 IDLE\n1 GENERATE\n")
+    state = waves.find("*.ray_sequencer_i.state")
+    assert {value for _, value in waves.changes(state)} == set(range(len(names))), "every state is passed through"
 
 
 def test_values_have_names_and_colours_are_colours():
@@ -194,26 +242,9 @@ def test_the_command(tmp_path):
     assert "module z_buffer" in broken.stdout
 
 
-@pytest.mark.parametrize(
-    ("options", "complaint"),
-    [
-        ((), "pixel: expected a ray's column and row, as in PIXEL=160,120, got none"),
-        (("--pixel", "48"), "pixel: expected a ray's column and row, as in 160,120, got 48"),
-        (("--pixel", "64,9", "--screen", "tiny"), "pixel: expected column from 0 to 63 and row from 0 to 47, got 64,9"),
-        (("--pixel", "1,1", "--units", "7"), "units: 7 does not divide"),
-        (("--pixel", "1,1", "no.toml"), "no.toml"),
-    ],
-)
-def test_mistakes(refuses, options, complaint):
-    """The error is one line without a traceback."""
-    assert complaint in refuses(main, *options)
-
-
 def test_names():
     """A signal's name gives its module, and a pixel's text gives its place."""
     assert module_of("bench.dut.ray_caster_renderer_i.ray_caster_i.ray_unit_12_i.z_buffer_i.found") == "z_buffer"
     assert module_of("bench.dut.ray_caster_renderer_i.line_buffer_3_i.write") == "line_buffer"
     assert module_of("bench.dut.irq") == "ray_caster_module"
     assert pixel_place("3, 4") == (3, 4)
-    with pytest.raises(UserError, match="a ray's column and row"):
-        pixel_place("3,-4")

@@ -1,32 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""Waveforms: reading them, recording a window of a frame, and the save files for viewers."""
+"""Waveforms: reading them, viewers, and machines that cannot record FST. test_trace.py has recordings of designs."""
 
 from __future__ import annotations
 
-import io
 import os
-import re
 import shutil
 from pathlib import Path
 
 import pytest
-from conftest import BUILD, SMALL_SCENE, called
+from conftest import SMALL_SCENE, called, write_script
 
-from raycaster.debug.probes.ray import Ray, fields
-from raycaster.debug.recorder import build_and_record
+from raycaster.debug.probes.ray import fields
 from raycaster.debug.trace import main as trace
-from raycaster.debug.wave import main, viewer, write_view
+from raycaster.debug.wave import viewer
 from raycaster.debug.wave_files import View, write_files
 from raycaster.debug.waves import Waves, signed
-from raycaster.design import Design, design_for
 from raycaster.errors import UserError
-from raycaster.output import Console
 from raycaster.rtl.common.records import Signs
-from raycaster.rtl.engine.ray_sequencer import RayState
-from raycaster.sim.monitor import CLOCK_NS
 from raycaster.sim.simulator import FST_HEADERS, has_headers
 
-VCD = """
+VCD = f"""
 $timescale 10ps $end
 $scope module bench $end
 $var reg 1 ! clk $end
@@ -38,33 +31,14 @@ $var real 1 % share $end
 $upscope $end
 $upscope $end
 $enddefinitions $end
-#500
-$dumpvars
-1!
-bxxx "
-bz #
-b1 $
-r0.5 %
-$end
-#1000
-0!
-#2000
-1!
-b001 "
-b1000000000000000000000000000000000000000000000000000000000000000000001 #
-#3000
-0!
-#4000
-1!
-b10x "
-b10 $
-#5000
-0!
-#6000
-1!
-b111 "
-#7000
-0!
+#500 $dumpvars 1! bxxx " bz # b1 $ r0.5 % $end
+#1000 0!
+#2000 1! b001 " b1{"0" * 68}1 #
+#3000 0!
+#4000 1! b10x " b10 $
+#5000 0!
+#6000 1! b111 "
+#7000 0!
 """
 
 
@@ -129,6 +103,13 @@ def test_names(vcd):
 
 
 def test_wrong_names_and_files_get_one_line(vcd, tmp_path):
+    """An error is better than a file that the viewer would complain about."""
+    for signal, complaint in (
+        ("bench.dut.nothing", r"has no signal bench\.dut\.nothing"),
+        ("bench.clk:octal", "unknown number format: octal"),
+    ):
+        with pytest.raises(UserError, match=complaint):
+            write_files(vcd, View({"control": [signal]}, {}, 5, 70))
     with pytest.raises(UserError, match=r"has no signal bench\.dut\.stat; similar names: bench\.dut\.state"):
         vcd.sample(["bench.dut.stat"])
     with pytest.raises(UserError, match=r"matches 4 signals: bench\.clk, bench\.dut\.state \.\.\."):
@@ -146,113 +127,6 @@ def test_twos_complement():
     assert [signed(value, 3) for value in (0, 3, 4, 7, None)] == [0, 3, -4, -1, None]
 
 
-SCENE = Path(__file__).with_name("tall.toml")
-
-# Options other than the defaults, with which every traced waveform must have the signals that a viewer shows.
-OPTIONS = {
-    "seed": {"units": "8", "culling": "0", "rounding": "nearest"},
-    "exact": {"engine": "exact"},
-    "beam": {"engine": "beam", "reflections": "2"},
-}
-PIXEL = (48, 2)
-
-
-@pytest.fixture(scope="module", params=OPTIONS)
-def wave(request, tmp_path_factory) -> tuple[Design, Ray, Waves, list[Path]]:
-    """Record a window of each engine's frame in Icarus, which builds quickly, and write the viewers' files."""
-    design = design_for(SCENE, {"screen": "tiny", "rectangles": "3", **OPTIONS[request.param]})
-    ray = Ray(design, PIXEL[1], PIXEL[0])
-    target = tmp_path_factory.mktemp("wave") / "tall"
-    waves = build_and_record(design, "icarus", (1, 3), target, build=BUILD, console=Console(file=io.StringIO()))
-    files = write_view(waves, design, ray)
-    return design, ray, Waves(waves), files
-
-
-@pytest.mark.slow_sets("beam", "seed")
-def test_window_has_its_rows_alone(wave):
-    """It runs from the start of the first row's computation until the last row has been shown."""
-    design, _, waves, _ = wave
-    row_ns = design.configuration.screen_geometry.row_cycles * CLOCK_NS
-    begin, end = waves.span_ns()
-    rows = 4 if design.configuration.engine != "beam" else 3
-    assert rows * row_ns < end - begin < (rows + 0.2) * row_ns
-    assert [path.name for path in waves.path.parent.parent.iterdir()] == ["tall"], "nothing half-written is left"
-
-
-def test_viewers_show_what_there_is(wave):
-    """The waveform has every signal of the save files, with its width; groups are ordered and labels are unique."""
-    _, _, waves, (gtkwave, surfer) = wave
-    # Bits of a word are shown as bits or as the whole word.
-    shown = re.findall(r"^(?:\+\{.*\} |#\{.*\} (?:.*\(\d+\)|\(\d+\)))?(bench\.\S+)$", gtkwave.read_text(), re.MULTILINE)
-    assert len(shown) > 30
-    for name in shown:
-        signal, _, last_bit = name.removesuffix(":0]").partition("[")
-        assert waves.width(signal) == int(last_bit or 0) + 1, name
-    added = re.findall(r"^variable_add (\S+)$", surfer.read_text(), re.MULTILINE)
-    assert added == [name.partition("[")[0] for name in shown]
-    groups = re.findall(r"^divider_add (\S+)$", surfer.read_text(), re.MULTILINE)
-    assert groups[0] == "control"
-    assert groups[-2:] == ["video", "bus"]
-    labels = re.findall(r"^[+#]\{(.*?)\}", gtkwave.read_text(), re.MULTILINE)
-    assert len(set(labels)) == len(labels), "two signals have one label"
-
-
-def test_states_have_their_names(wave):
-    """The viewers get a file with the names from the enumeration in the hardware's source."""
-    design, _, waves, (gtkwave, surfer) = wave
-    names = [f"{item._val} {name}" for name, item in ((name, getattr(RayState, name)) for name in RayState._names)]
-    filters = re.findall(r"^\^\d+ (\S+)$", gtkwave.read_text(), re.MULTILINE)
-    if design.configuration.engine == "beam":
-        assert not filters, "it has no states"
-        return
-    assert [Path(path).read_text().split("\n")[:-1] for path in filters] == [names]
-    assert "item_set_format ray_sequencer.state\n" in surfer.read_text()
-    mapping = (waves.path.parent / ".surfer" / "mappings" / "ray_sequencer.state.txt").read_text()
-    assert mapping.startswith("Name = ray_sequencer.state\nBits = 3\n0 IDLE\n1 GENERATE\n")
-    state = waves.find("*.ray_sequencer_i.state")
-    assert {value for _, value in waves.changes(state)} == set(range(len(names))), "every state is passed through"
-
-
-def test_cursor_is_at_the_pixel(wave):
-    """The pixel's ray starts at the cursor."""
-    design, ray, waves, (gtkwave, surfer) = wave
-    (units,) = re.findall(r"^\*-\d+\.\d+ (\d+) ", gtkwave.read_text(), re.MULTILINE)
-    (ticks,) = re.findall(r"^cursor_set (\d+)$", surfer.read_text(), re.MULTILINE)
-    assert int(units) == int(ticks) * waves.tick_units
-    time_ns = int(ticks) / waves.ticks(1)
-    if design.configuration.engine == "beam":
-        assert waves.value("bench.dut.beam_renderer_i.row", time_ns) == ray.row
-        assert waves.value("bench.dut.beam_renderer_i.scan_next_column", time_ns) == 1
-        return
-    assert waves.value("bench.dut.ray_caster_renderer_i.place_row", time_ns) == ray.row
-    assert waves.value("bench.dut.ray_caster_renderer_i.place_column_offset", time_ns) == ray.offset
-    assert waves.value(waves.find("*.ray_sequencer_i.steps_screen_to_ray"), time_ns) == 1
-
-
-def test_a_missing_signal_is_reported(wave):
-    """An error is better than a file that the viewer would complain about."""
-    _, _, waves, _ = wave
-    with pytest.raises(UserError, match=r"has no signal bench\.dut\.nothing"):
-        write_files(waves, View({"control": ["bench.dut.nothing"]}, {}, 0, 1))
-    with pytest.raises(UserError, match="unknown number format: octal"):
-        write_files(waves, View({"control": ["bench.clk:octal"]}, {}, 0, 1))
-
-
-@pytest.mark.parametrize(
-    ("options", "complaint"),
-    [
-        (("--pixel", "3,3", "--span", "4,5"), "span: rows 4 to 5 do not include the pixel's row 3"),
-        (("--pixel", "3,3", "--span", "0,48"), "span: expected rows from 0 to 47 in rising order, got 0,48"),
-        (("--pixel", "3,3", "--span", "few"), "span: expected the first and the last row"),
-        (("--pixel", "3,48"), "pixel: expected column from 0 to 63 and row from 0 to 47, got 3,48"),
-        (("--simulator", "questa"), "simulator: expected verilator or icarus, got questa"),
-    ],
-)
-def test_mistakes(refuses, options, complaint):
-    """The error is one line without a traceback."""
-    assert complaint in refuses(main, "--screen", "tiny", *options)
-
-
 def test_the_viewer_that_is_there_is_opened(tmp_path, monkeypatch):
     """GTKWave or Surfer is opened if there is a display."""
     waves, files = tmp_path / "waves.fst", [tmp_path / "view.gtkw", tmp_path / "view.sucl"]
@@ -261,8 +135,7 @@ def test_the_viewer_that_is_there_is_opened(tmp_path, monkeypatch):
     monkeypatch.setenv("DISPLAY", ":0")
     assert viewer(waves, files) is None
     for name in ("surfer", "gtkwave"):
-        (tmp_path / name).write_text("#!/bin/sh\n")
-        (tmp_path / name).chmod(0o755)
+        write_script(tmp_path, name)
         assert viewer(waves, files)[0] == name
     monkeypatch.delenv("DISPLAY")
     assert viewer(waves, files) is None
@@ -273,9 +146,7 @@ def no_fst_headers(tmp_path, monkeypatch):
     """Emulate a machine without the headers that Verilator's FST writer needs."""
     for header in FST_HEADERS:
         (tmp_path / header).write_text("#error no such header here\n")
-    compiler = tmp_path / "g++"
-    compiler.write_text(f'#!/bin/sh\nexec {shutil.which("g++")} -I "{tmp_path}" "$@"\n')
-    compiler.chmod(0o755)
+    write_script(tmp_path, "g++", f'exec {shutil.which("g++")} -I "{tmp_path}" "$@"')
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
 
 

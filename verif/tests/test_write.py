@@ -2,12 +2,14 @@
 """The whole design as Verilog."""
 
 import ast
-import filecmp
 import os
 import re
 import subprocess
 import sys
+from collections import Counter
+from dataclasses import replace
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
@@ -20,86 +22,60 @@ from raycaster.convert.write import write_verilog
 from raycaster.hdl.errors import UserError
 from raycaster.output import emptied
 
+SMALL = configure(screen="tiny", units=2, rectangles=2, fraction_bits=1, allow_underrun=True)
+
 
 @pytest.mark.parametrize("units", [1, 8])
-def test_a_unit_is_one_module_and_many_instances(units, tmp_path):
-    config = configure(units=units, screen="tiny", rectangles=2, allow_underrun=True)
+def test_a_design_is_a_module_per_file(units, tmp_path):
+    """A unit is one module and many instances. In the file list, each module follows those that it instantiates.
+    Headers say what and never when."""
+    config = replace(SMALL, units=units)
     files = write_verilog(config, tmp_path / "verilog")
-    names = [path.stem for path in files]
-    assert len(set(names)) == len(names)
-    for module in ("ray_unit", "line_buffer"):
-        assert names.count(module) == 1
-        instances = [re.findall(rf"^{module} {module}(_\d+)?_i \($", path.read_text(), re.M) for path in files]
-        assert sum(map(len, instances)) == units
-    defined = {path: re.findall(r"^module (\w+)", path.read_text(), re.M) for path in files}
-    assert defined == {path: [path.stem] for path in files}
-    assert names[-1] == "ray_caster_module"
     assert (tmp_path / "verilog" / FILE_LIST).read_text().split() == [path.name for path in files]
-
-
-def test_every_module_is_made_of_nothing_unknown(tmp_path):
-    """In the file list, each module follows those that it instantiates."""
-    files = write_verilog(configure(screen="tiny", units=2, rectangles=2, allow_underrun=True), tmp_path / "verilog")
-    known = set()
+    assert files[-1].stem == "ray_caster_module"
+    instances, known, given = Counter(), set(), set()
     for path in files:
-        used = set(re.findall(r"^(\w+) \w+_i \($", path.read_text(), re.M))
-        assert used <= known, path.name
+        text = path.read_text()
+        assert re.findall(r"^module (\w+)", text, re.M) == [path.stem]
+        used = re.findall(r"^(\w+) \w+_i \($", text, re.M)
+        assert path.stem not in known and set(used) <= known, path.name
         known.add(path.stem)
-
-
-def test_the_header_says_what_and_never_when(tmp_path):
-    config = configure(screen="tiny", units=2, rectangles=2, fraction_bits=1, allow_underrun=True)
-    files = write_verilog(config, tmp_path / "verilog")
-    given = {path for path in files if path.stem in ("clock_gate", "by_axis")}
-    assert len(given) == 2
-    assert all(path.read_text() == Path(rtl.__path__[0], "common", path.name).read_text() for path in given)
-    for path in set(files) - given:
-        lines = path.read_text().splitlines()
-        assert lines[:2] == [f"// RayCaster: {path.stem}", f"// Configuration: {config.name}"]
-        assert "// SPDX-License-Identifier: MIT" in lines
-        assert not re.search(r"\b20\d\d-|(?<!\[)\b\d\d:\d\d|MyHDL|Generated", path.read_text())
+        instances.update(used)
+        if path.stem in ("clock_gate", "by_axis"):
+            given.add(path.stem)
+            assert text == Path(rtl.__path__[0], "common", path.name).read_text()
+            continue
+        assert text.startswith(f"// RayCaster: {path.stem}\n// Configuration: {config.name}\n")
+        assert "\n// SPDX-License-Identifier: MIT\n" in text
+        assert not re.search(r"\b20\d\d-|(?<!\[)\b\d\d:\d\d|MyHDL|Generated", text)
+    assert (instances["ray_unit"], instances["line_buffer"], len(given)) == (units, units, 2)
 
 
 @pytest.mark.slow
 def test_any_process_writes_the_same_bytes(tmp_path):
-    # MyHDL iterates over Python sets, whose order depends on the hash seed.
-    numbers = ("1", "2", "3", "4")
-    for number in numbers:
+    """MyHDL iterates over Python sets, whose order depends on the hash seed."""
+
+    def written(number: str) -> dict[Path, bytes]:
         command = [sys.executable, "-m", "raycaster.cli", "verilog", "--output", str(tmp_path / number)]
         command += ["--screen", "tiny", "--units", "4", "--rectangles", "5", "--allow-underrun"]
         subprocess.run(command, env={**os.environ, "PYTHONHASHSEED": number}, check=True, capture_output=True)
-    first, *others = (
-        sorted(str(path.relative_to(tmp_path / number)) for path in (tmp_path / number).rglob("*") if path.is_file())
-        for number in numbers
-    )
-    assert first
-    for number, files in zip(numbers[1:], others, strict=True):
-        assert files == first
-        assert filecmp.cmpfiles(tmp_path / "1", tmp_path / number, first, shallow=False) == (first, [], [])
+        files = [path for path in (tmp_path / number).rglob("*") if path.is_file()]
+        return {path.relative_to(tmp_path / number): path.read_bytes() for path in files}
+
+    assert written("1") == written("2") == written("3") == written("4") != {}
 
 
-def test_a_directory_is_replaced_as_a_whole(tmp_path):
-    directory = tmp_path / "verilog"
-    config = configure(screen="tiny", units=2, rectangles=2, allow_underrun=True)
-    write_verilog(config, directory)
-    (directory / "ray_unit_of_yesterday.v").write_text("module ray_unit;")
-    write_verilog(config, directory)
-    assert not list(directory.glob("*yesterday*"))
-    assert [path.name for path in tmp_path.iterdir()] == ["verilog"], "nothing else is left"
-
-
-def test_a_conversion_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
+def test_a_directory_is_replaced_as_a_whole(tmp_path, monkeypatch):
+    """A conversion that fails leaves what was there, and one that succeeds leaves nothing of it."""
     directory = emptied(tmp_path / "verilog")
-    (directory / "kept.v").write_text("module kept;")
-
-    def fail(*_):
-        raise UserError("broken")
-
-    monkeypatch.setattr(write, "convert_hierarchy", fail)
-    with pytest.raises(UserError):
-        write_verilog(configure(screen="tiny", units=2, rectangles=2, allow_underrun=True), directory)
-    assert [path.name for path in directory.glob("*.v")] == ["kept.v"]
-    assert [path.name for path in tmp_path.iterdir()] == ["verilog"]
+    (directory / "yesterday.v").write_text("module yesterday;")
+    with monkeypatch.context() as patch, pytest.raises(UserError):
+        patch.setattr(write, "convert_hierarchy", Mock(side_effect=UserError("broken")))
+        write_verilog(SMALL, directory)
+    assert [path.name for path in directory.glob("*.v")] == ["yesterday.v"]
+    files = write_verilog(SMALL, directory)
+    assert {*directory.glob("*.v")} == {*files}
+    assert [path.name for path in tmp_path.iterdir()] == ["verilog"], "nothing else is left"
 
 
 def test_one_block_alone_has_logic_on_the_clock():

@@ -84,7 +84,7 @@ async def _case(harness: Harness, registers: list[Register], number: int) -> dic
         for seed in (number, number + 1)
     )
     await harness.reset()
-    await _program(harness, scene)
+    await harness.load(scene, scene.reflections)
     assert await _look(harness, harness.golden(scene, scene.reflections)) == "right", "wrong before anything happened"
 
     await ClockCycles(harness.bench.clk, random.randrange(1, screen.vertical.total * screen.line_cycles))
@@ -99,7 +99,7 @@ async def _case(harness: Harness, registers: list[Register], number: int) -> dic
         seen = await _look_until_right(harness, scene)
     # Next, or at once after a reset or misuse, software loads another scene; its commit repairs the rest.
     mended = "unseen" if seen == ["right", "right"] else "StartScreen" if seen[-1:] == ["right"] else "commit"
-    came_back = await _answers(harness) and await _shows(harness, other)
+    came_back = await _comes_back(harness, other)
     wrong = [each for each in seen if each != "right"]
     return result | {"outcome": mended if came_back else "hangs", "wrong": len(wrong), "lost_sync": "sync" in wrong}
 
@@ -122,30 +122,18 @@ async def _look(harness: Harness, picture: np.ndarray) -> str:
     return "wrong" if count_wrong(frame, picture) else "right"
 
 
-async def _program(harness: Harness, scene: Scene) -> None:
-    await harness.bus.load_scene(scene)
-    await harness.bus.commit(reflections=scene.reflections)
-
-
-async def _answers(harness: Harness) -> bool:
-    """True if the identification can still be read on the bus."""
-    expected = harness.bus.registers["id"].reset
-    word = harness.bus.read_word(harness.bus.registers["id"].address)
+async def _comes_back(harness: Harness, scene: Scene) -> bool:
+    """True if the identification can still be read on the bus, and a scene is shown in one of the next frames."""
+    bus, picture = harness.bus, harness.golden(scene, scene.reflections)
+    # A word of a scene takes less than a tenth of `PATIENCE`.
+    words = 4 * harness.configuration.rectangles + 8
     try:
-        return await with_timeout(word, PATIENCE * CLOCK_NS, "ns") == expected
+        word = await with_timeout(bus.read_word(bus.registers["id"].address), PATIENCE * CLOCK_NS, "ns")
+        if word != bus.registers["id"].reset:
+            return False
+        await with_timeout(harness.load(scene, scene.reflections), words * PATIENCE * CLOCK_NS, "ns")
     except SimTimeoutError:
         return False
-
-
-async def _shows(harness: Harness, scene: Scene) -> bool:
-    """True if a scene is shown in one of the next frames."""
-    try:
-        # A word takes less than a tenth of `PATIENCE`.
-        writes = PATIENCE * CLOCK_NS * (4 * harness.configuration.rectangles + 8)
-        await with_timeout(_program(harness, scene), writes, "ns")
-    except SimTimeoutError:
-        return False
-    picture = harness.golden(scene, scene.reflections)
     return any([await _look(harness, picture) == "right" for _ in range(FRAMES)])
 
 

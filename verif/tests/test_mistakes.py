@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: MIT
+"""Mistakes on the command line: each gets one line without a traceback, and no file is written, changed or removed."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from conftest import refusal
+
+from raycaster.sim.simulator import MODELS_VARIABLE
+
+SCENE = """
+[camera]
+position = [20, 256, 100]
+[[rect]]
+corners = [[0, 0, 0], [511, 511, 0]]
+colour = "#c8c8b4"
+"""
+TURNED = SCENE.replace("100]", "100]\nyaw = 20")
+PATTERNED = SCENE + 'pattern = "rows"\ncolour2 = "#000000"'
+
+OF_SCENES = [
+    ("[camera", "", "is not TOML"),
+    ("rows = 180" + SCENE, "", "180 rows need the beam engine"),
+    (SCENE.replace("511, 0]", "511, 1]"), "", "rect"),
+    (SCENE.replace("256", "512"), "", "camera"),
+    (SCENE + SCENE[SCENE.index("[[rect") :] * 12, "", "13 rectangles, but the hardware holds 12"),
+    (TURNED, "--engine seed", "the seed engine measures depth along x, so its camera cannot turn"),
+    (TURNED, "FIX=all ENGINE=seed", "the seed engine measures depth along x"),
+    (TURNED, "TURN=0", "the scene needs a camera that turns; leave TURN out"),
+    (SCENE + "mirror = 0", "MATERIALS=0", "the scene needs rectangles that mirror more or less than half"),
+    (PATTERNED, "PATTERNS=0", "the scene needs rectangles with patterns; leave PATTERNS out"),
+]
+"""Text of a scene, options of `sim` and the complaint."""
+
+OF_COMMANDS = {
+    "sim": [
+        ("none.toml", "none.toml: cannot be read"),
+        ("boxes de2/boxes.toml", "same file name"),
+        ("mine.toml --units 7", "units: 7 does not divide"),
+        ("mine.toml --units 4", "row budget: "),
+        ("mine.toml --rows 180", "rows: "),
+        ("mine.toml --screen tiny --rows 240", "rows: "),
+        ("mine.toml --simulator questa", "simulator: expected verilator or icarus, got questa"),
+        ("--gates mine.toml --cells xilinx", "cells: expected ecp5 or ice40 or gowin, got xilinx"),
+    ],
+    "trace": [
+        ("", "pixel: expected a ray's column and row, as in PIXEL=160,120, got none"),
+        ("--pixel 48", "pixel: expected a ray's column and row, as in 160,120, got 48"),
+        ("--pixel 3,-4", "a ray's column and row"),
+        ("--pixel 64,9 --screen tiny", "pixel: expected column from 0 to 63 and row from 0 to 47, got 64,9"),
+        ("--pixel 1,1 no.toml", "no.toml"),
+    ],
+    "wave --screen tiny": [
+        ("--pixel 3,3 --span 4,5", "span: rows 4 to 5 do not include the pixel's row 3"),
+        ("--pixel 3,3 --span 0,48", "span: expected rows from 0 to 47 in rising order, got 0,48"),
+        ("--pixel 3,3 --span few", "span: expected the first and the last row"),
+        ("--pixel 3,48", "pixel: expected column from 0 to 63 and row from 0 to 47, got 3,48"),
+        ("--simulator questa", "simulator: expected verilator or icarus, got questa"),
+    ],
+    "verilog": [
+        ("boxes FIX=some", "fix: expected rects or all, got some"),
+        ("boxes FIX=all RECTANGLES=12", "leave RECTANGLES out"),
+        ("FIX=all", "needs a scene"),
+        ("boxes", "give FIX=rects or FIX=all"),
+        ("nowhere.toml FIX=all", "nowhere.toml"),
+        ("--output file/x", "file"),
+        ("--output file", "file"),
+        ("--output /proc/x", "/proc/x"),
+        ("--output " + "x" * 300, "File name too long"),
+        ("--output mine", "has files in it"),
+    ],
+    "registers": [("--output /proc/x", "/proc/x"), ("--output mine", "has files in it")],
+    "commands": [("--output file", "file")],
+    "quartus": [
+        ("--board de0", "board: expected de10_lite, de1_soc, de2 or de2_115, got de0 (did you mean de2?)"),
+        ("none.toml --board de2", "none.toml: cannot be read: No such file or directory"),
+        ("--board de2 --colour-bits 9", "colour_bits: "),
+        ("--board de2 --engine beam", "engine: the boards' projects run at 50 MHz, but the beam engine needs"),
+        ("--board de2 --output file", "file"),
+        ("--board de2 --output .", "has files in it"),
+    ],
+    "bitstream": [
+        ("--board ice40", "board: expected colorlight_i9, icebreaker, icepi_zero, "),
+        ("nowhere.toml", "nowhere.toml: cannot be read"),
+        ("--game mine.toml", "game: the game sets up its own scene; leave out SCENE, FIX and FIT"),
+        ("--game --fix all", "game: the game sets up its own scene; leave out SCENE, FIX and FIT"),
+        ("--output file", "file"),
+    ],
+    "fit boxes": [
+        ("--fps 75", "240 rows are shown at 60 frames per second, not 75"),
+        ("--fix some", "fix: expected rects or all, got some"),
+        ("--error -1", "error: expected per cent of the pixels, 0 to 100, got -1"),
+    ],
+    "area": [
+        ("--family ice40", "family: expected one of ecp5, cycloneive, cyclonev, got ice40"),
+        ("--units 7", "units: 7 does not divide the 320 columns"),
+        ("--features --engine beam", "features: counts a fixed set of designs"),
+    ],
+    "verify dvi": [
+        ("--board ice40", "board: expected "),
+        ("nowhere.toml", "nowhere.toml: cannot be read"),
+    ],
+    "verify upsets": [
+        ("--cases 0", "argument --cases: invalid positive value: '0'"),
+        ("--engine exact --bus apb", "bus: verify upsets drives the registers itself"),
+        ("--build file", "file"),
+    ],
+    "verify coverage": [("--build file", "file")],
+}
+"""Options of each command, and the complaint."""
+
+DVI = [
+    ("mine.toml --colour-bits 4", "colour_bits: a DVI link carries 8 bits"),
+    ("mine.toml --engine beam --screen play", "screen: play is for simulation only; leave it"),
+]
+LATE = {
+    "sim boxes": [("--build file", "file")],
+    "trace boxes": [("PIXEL=1,1 --build file", "file")],
+    "wave boxes": [("--screen tiny --build /proc/x", "/proc/x")],
+    "bitstream": DVI,
+    "verify dvi": DVI,
+    "verify soak": [("--build file", "file")],
+    "fit boxes": [("--error 0.0001 --engine seed --fraction-bits 0", "no design shows ")],
+}
+"""Mistakes that show once the command has announced its work."""
+
+
+def sets(table: dict[str, list[tuple[str, str]]], **given: bool) -> list:
+    """Return parameter sets of a table's rows."""
+    return [
+        pytest.param(SCENE, f"{name} {options}", said, given, id=f"{name} {options}"[:70])
+        for name, rows in table.items()
+        for options, said in rows
+    ]
+
+
+@pytest.fixture
+def directory(tmp_path: Path, monkeypatch) -> Path:
+    """Return a user's directory with a scene, a file, and directories that no command made."""
+    monkeypatch.delenv(MODELS_VARIABLE)
+    for name in ("mine/thesis", "de2/boxes.toml", "file"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(SCENE)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "complaint", "given"),
+    [
+        *((text, f"sim mine.toml {options}", said, {}) for text, options, said in OF_SCENES),
+        *sets(OF_COMMANDS),
+        *sets(LATE, late=True),
+    ],
+)
+def test_a_mistake_gets_one_line(directory, text, words, complaint, given):
+    (directory / "mine.toml").write_text(text)
+    assert complaint in refusal(directory, *words.split(), **given)
+
+
+@pytest.mark.parametrize(
+    ("simulator", "present", "missing"),
+    [
+        ("icarus", "", "Icarus Verilog is missing; install it"),
+        ("verilator", "make perl", "g++ is missing"),
+        ("verilator", "g++ perl", "make is missing"),
+        ("verilator", "g++ make", "perl is missing"),
+    ],
+)
+def test_missing_programs_are_named(directory, tmp_path_factory, monkeypatch, simulator, present, missing):
+    tools = tmp_path_factory.mktemp("bin")
+    for tool in present.split():
+        (tools / tool).symlink_to(shutil.which(tool))
+    monkeypatch.setenv("PATH", str(tools))
+    assert missing in refusal(directory, "sim", "floor", "--simulator", simulator)
