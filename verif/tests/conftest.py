@@ -13,9 +13,11 @@ import sysconfig
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from raycaster.cli.__main__ import main
 from raycaster.configuration import Configuration, configure
@@ -27,6 +29,8 @@ from raycaster.sim.job import Job
 from raycaster.sim.simulator import MODELS_VARIABLE, build_model, find_tool, run_bench
 from raycaster.verif.recording import RECORD_VARIABLE, record_test
 from raycaster.verif.seeds import repeat, seed
+from raycaster.web.browser import browser_page
+from raycaster.web.site import Model, write_site
 
 ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build"
@@ -40,6 +44,14 @@ TINY = {
     "beam": configure(engine="beam", screen="tiny", rectangles=3),
 }
 """Designs for the small scene, by engine, for tests to which the design does not matter."""
+
+_LOOKS = {"materials": True, "patterns": True, "reflections": 2}
+PAGE_MODELS = {
+    "walk": Model("walk", {"engine": "beam", "screen": "tiny", "turn": True}),
+    "exact": Model("exact", {"engine": "exact", "screen": "tiny", "turn": True, **_LOOKS, "light": True}, taps=True),
+    "seed-0": Model("seed-0", {"engine": "seed", "screen": "tiny", **_LOOKS}, taps=True),
+}
+"""Small models for the web page, by the names of the page's own."""
 
 Bench = Callable[..., Path]
 
@@ -210,6 +222,39 @@ def write_script(directory: Path, name: str, text: str = "exit 1") -> None:
     path = directory / name
     path.write_text(f"#!/bin/sh\n{text}\n")
     path.chmod(0o755)
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write the web page with small models."""
+    output = tmp_path_factory.mktemp("site") / "web"
+    write_site(output, BUILD, Console(quiet=True), models=tuple(PAGE_MODELS.values()), test=True)
+    return output
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Page of a browser that the tests of a file share; `said` has what scripts write on the console."""
+    with browser_page() as page:
+        page.set_default_timeout(60_000)
+        page.said = []
+        page.on("console", lambda message: page.said.append(message.text))
+        yield page
+
+
+@pytest.fixture
+def page(browser: Any) -> Iterator[Any]:
+    """Empty page, on whose console nothing may be written."""
+    browser.said.clear()
+    browser.goto("about:blank")
+    yield browser
+    assert browser.said == []
+
+
+def page_state(page: Any, tab: str) -> dict:
+    """Return the state of a tab of the web page once it has a result."""
+    page.wait_for_function(f"RayCaster.state.{tab}?.done || RayCaster.state.{tab}?.error")
+    return page.evaluate(f"RayCaster.state.{tab}")
 
 
 @pytest.fixture
