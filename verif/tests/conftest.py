@@ -22,6 +22,7 @@ from rich.console import Console
 from raycaster.cli.__main__ import main
 from raycaster.configuration import Configuration, configure
 from raycaster.convert import provenance
+from raycaster.docs.commands import outside_make
 from raycaster.hdl.elaboration import forgetting
 from raycaster.hdl.leaf import Leaf
 from raycaster.options import run_command
@@ -29,8 +30,6 @@ from raycaster.sim.job import Job
 from raycaster.sim.simulator import MODELS_VARIABLE, build_model, find_tool, run_bench
 from raycaster.verif.recording import RECORD_VARIABLE, record_test
 from raycaster.verif.seeds import repeat, seed
-from raycaster.web.browser import browser_page
-from raycaster.web.site import Model, write_site
 
 ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build"
@@ -45,13 +44,13 @@ TINY = {
 }
 """Designs for the small scene, by engine, for tests to which the design does not matter."""
 
-_LOOKS = {"materials": True, "patterns": True, "reflections": 2}
+_LOOKS = {"screen": "tiny", "materials": True, "patterns": True, "reflections": 2}
 PAGE_MODELS = {
-    "walk": Model("walk", {"engine": "beam", "screen": "tiny", "turn": True}),
-    "exact": Model("exact", {"engine": "exact", "screen": "tiny", "turn": True, **_LOOKS, "light": True}, taps=True),
-    "seed-0": Model("seed-0", {"engine": "seed", "screen": "tiny", **_LOOKS}, taps=True),
+    "walk": {"engine": "beam", "screen": "tiny", "turn": True},
+    "exact": {"engine": "exact", "turn": True, "light": True, **_LOOKS},
+    "seed-0": {"engine": "seed", **_LOOKS},
 }
-"""Small models for the web page, by the names of the page's own."""
+"""Options of small models for the web page, by the names of the page's own; all but the walk have taps."""
 
 Bench = Callable[..., Path]
 
@@ -196,6 +195,12 @@ def run_tool(directory: Path, *command: str, **variables: str) -> subprocess.Com
     )
 
 
+def make(*words: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
+    """Run make as a person would, even if another make runs the tests."""
+    command = ["make", *words]
+    return subprocess.run(command, cwd=cwd, env=outside_make(), capture_output=True, text=True, check=False)
+
+
 @pytest.fixture
 def stand_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str], None]:
     """Return a function that writes a shell script with the name of a program, in the only folder that is searched."""
@@ -227,14 +232,19 @@ def write_script(directory: Path, name: str, text: str = "exit 1") -> None:
 @pytest.fixture(scope="session")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Write the web page with small models."""
+    from raycaster.web.site import Model, write_site  # noqa: PLC0415 - only tests of the page need it
+
     output = tmp_path_factory.mktemp("site") / "web"
-    write_site(output, BUILD, Console(quiet=True), models=tuple(PAGE_MODELS.values()), test=True)
+    models = [Model(name, options, taps=name != "walk") for name, options in PAGE_MODELS.items()]
+    write_site(output, BUILD, Console(quiet=True), models=models, test=True)
     return output
 
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
     """Page of a browser that the tests of a file share; `said` has what scripts write on the console."""
+    from raycaster.web.browser import browser_page  # noqa: PLC0415 - only tests of pages need it
+
     with browser_page() as page:
         page.set_default_timeout(60_000)
         page.said = []

@@ -15,6 +15,7 @@ import pytest
 from conftest import BUILD, PAGE_MODELS, page_state
 from rich.console import Console
 
+from raycaster.configuration import configure
 from raycaster.engines import SEED
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.seed_engine import SeedModel
@@ -28,7 +29,7 @@ from raycaster.web import speed
 from raycaster.web.site import MODELS, write_site
 from raycaster.web.site import main as site_main
 
-WALK, TINY = (PAGE_MODELS[name].configuration.screen_geometry for name in ("walk", "exact"))
+WALK, TINY = (configure(**PAGE_MODELS[name]).screen_geometry for name in ("walk", "exact"))
 VGA = SCREENS["vga", 240]
 PIXELS = f"{WALK.columns * WALK.rows:,}"
 MOST_BYTES = 2_000_000

@@ -1,31 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""A pixel's life on the page: the recorded signals and the page's account of them match the golden model."""
+"""A pixel's life on the page: its account of the recorded signals matches the golden model."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable
-from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
-from typing import NamedTuple
 
 import numpy as np
 import pytest
 from conftest import PAGE_MODELS, page_state
 
-from raycaster.configuration import Configuration
-from raycaster.debug.probes.engines import description_of
+from raycaster.configuration import Configuration, configure
 from raycaster.debug.probes.exact import lighting
-from raycaster.debug.probes.ray import Place, Ray, Reading, read
-from raycaster.debug.waves import Samples
+from raycaster.debug.probes.ray import Place, Ray
 from raycaster.design import Design
 from raycaster.engines import SEED
 from raycaster.scene import load_scene
 from raycaster.verif.seeds import repeat, seed
-from raycaster.web.taps import TAP_BITS, tap_facts, tapped_probes, tapped_signals
+from raycaster.web.taps import tap_facts, tapped_probes, tapped_signals
 
-DESIGNS = {name: PAGE_MODELS[model].configuration for name, model in (("exact", "exact"), ("seed", "seed-0"))}
+MODELS = {"exact": "exact", "seed": "seed-0"}
+DESIGNS = {engine: configure(**PAGE_MODELS[model]) for engine, model in MODELS.items()}
 SCENES = {"exact": ("evening", "shadow_hall", "kaleidoscope", "staircase"), "seed": ("facing_mirrors", "stage")}
 """Scenes with several kinds of mirrors, patterns, rays that miss, and for the exact engine a turned camera and a light.
 """
@@ -43,26 +37,11 @@ WATCH = """async ([model, source, pixels]) => {
     for (const [column, row] of pixels) {
         const { samples, pixels } = await machine.watch(column, row);
         const monitor = rgb(pixels.subarray(4 * (row * columns + column)));
-        found.push({ samples: [...samples], monitor, life: RayCasterLife.read(taps, samples, fractionBits) });
+        found.push({ monitor, life: RayCasterLife.read(taps, samples, fractionBits) });
     }
     machine.end();
-    return JSON.stringify(found);
+    return found;
 }"""
-
-
-class Recorded(NamedTuple):
-    """The taps of a unit, read like a waveform."""
-
-    values: dict[str, list[int]]
-    clocks: int
-    path = Path("taps")
-
-    def width(self, name: str) -> int:
-        return TAP_BITS
-
-    def sample(self, names: Iterable[str]) -> Samples:
-        values = {name: self.values.get(name, self.clocks * [0]) for name in names}
-        return Samples([float(clock) for clock in range(self.clocks)], values)
 
 
 def ray_of(path: Path, config: Configuration, column: int, row: int, reflections: int | None = None) -> Ray:
@@ -76,38 +55,30 @@ def random_pixels(number: int, count: int) -> list[tuple[int, int]]:
     return np.random.default_rng([seed(), number]).integers((COLUMNS, ROWS), size=(count, 2)).tolist()
 
 
-def readings_of(samples: list[int], ray: Ray) -> list[Reading]:
-    """Read the signals of a pixel's unit, which are recorded until the pixel is complete."""
-    names, whole = tapped_signals(ray.config, ray.unit), description_of(ray.config, ray.unit)
-    words = np.reshape(samples, (-1, len(names)))
-    tapped = SimpleNamespace(
-        probes=tapped_probes(ray.config, ray.unit), events=whole.events, controls=whole.controls,
-        expected=lambda ray: [event for event in whole.expected(ray) if event[0] != "shown"],
-        event_names=whole.event_names, named=whole.named,
-    )  # fmt: skip
-    return read(Recorded(dict(zip(names, words.T.tolist(), strict=True)), len(words)), tapped, ray)
-
-
 def shadow_of(ray: Ray, number: int) -> int:
     """Return the rectangle that shades a hit point; -1 if it is lit, -2 on the dark side."""
     shading = ray.golden.shadings[number]
     return int(shading.shades[0]) if shading.facing[0] else -2
 
 
-def assert_account(life: dict, ray: Ray, readings: list[Reading], context: str) -> None:
-    """Assert that the page's account of a pixel matches the golden model in every value that was read, and follows."""
+def assert_account(life: dict, ray: Ray, context: str) -> set[str]:
+    """Assert that the page's account of a pixel matches the golden model; return the quantities that it has."""
+    probes = {probe.quantity: probe for probe in tapped_probes(ray.config, ray.unit)}
+    compared = set()
+
+    def compare(values: dict[str, list[int]], place: Place) -> None:
+        for quantity, found in values.items():
+            golden = probes[quantity].golden(ray, place)
+            if golden and not probes[quantity].decode:
+                known = [value if one is None else one for one, value in zip(golden, found, strict=True)]
+                assert found == known, f"{quantity} at {place}; {context}"
+                compared.add(quantity)
+
     bounces = life["bounces"]
     assert len(bounces) == sum(ray.alive(number) for number in range(3)), context
-    for reading in readings:
-        number, rectangle = reading.place.bounce, reading.place.rectangle
-        if number >= len(bounces) or reading.probe.decode:
-            continue
-        of = life if reading.probe.event == "done" else bounces[number]
-        if rectangle is not None:
-            [of] = [one for one in bounces[number]["tried"] if one["rectangle"] == rectangle]
-        found = replace(reading, found=tuple(of["values"][reading.probe.quantity]))
-        assert found.wrong is None, f"{found}; {context}"
+    compare(life["values"], Place(0))
     for number, bounce in enumerate(bounces):
+        compare(bounce["values"], Place(number))
         winner, colour = ray.winner(number), int.from_bytes(ray.golden.seen[number][0].tobytes())
         told = bounce["winner"], bounce["slope"], bounce["colour"]
         assert told == (winner, list(ray.of_ray(number, "slopes")), colour), context
@@ -117,41 +88,39 @@ def assert_account(life: dict, ray: Ray, readings: list[Reading], context: str) 
         assert not left_out or (ray.config.culling and number == 0), context
         for one in bounce["tried"]:
             place = Place(number, one["rectangle"])
+            compare(one["values"], place)
             if "inside" in one["values"]:
                 nearest = ray.nearest(place)
                 assert (one["kept"], one["found"]) == (nearest == place.rectangle, nearest >= 0), context
             else:  # its slot ended early
+                assert ray.config.culling, context
                 left_out.add(place.rectangle)
         assert not any(ray.of_rectangle(Place(number, index), "hits") for index in left_out), context
         if winner >= 0:
             point = ray.golden.points[number][0].tolist(), ray.golden.denominators[number][0]
             assert (bounce["point"], bounce["denominator"]) == point, context
             assert not ray.scene.light or bounce["shadow"] == shadow_of(ray, number), context
+    return compared
 
 
 @pytest.mark.slow_sets("seed")
 @pytest.mark.parametrize("engine", DESIGNS)
-def test_signals_and_account_match_golden(engine, scenes, page, site):
+def test_a_life_matches_golden(engine, scenes, page, site):
     config = DESIGNS[engine]
     page.goto((site / "index.html").as_uri())
-    held, lengths, shadows = 0, set(), set()
+    compared, lengths, shadows = set(), set(), set()
     for number, name in enumerate(SCENES[engine]):
         path, pixels = scenes / f"{name}.toml", random_pixels(number, PIXELS)
-        said = page.evaluate(WATCH, ["exact" if engine == "exact" else "seed-0", path.read_text(), pixels])
-        for (column, row), found in zip(pixels, json.loads(said), strict=True):
+        found = page.evaluate(WATCH, [MODELS[engine], path.read_text(), pixels])
+        for (column, row), pixel in zip(pixels, found, strict=True):
             context = f"{name}, column {column}, row {row}; {repeat()}"
             ray = ray_of(path, config, column, row, 2)
-            readings = readings_of(found["samples"], ray)
-            wrong = [reading for reading in readings if reading.wrong is not None]
-            assert not wrong, f"{wrong[0]}; {context}"
-            assert {reading.probe.quantity for reading in readings} >= {"colour seen", "pixel", "inside"}, context
-            assert found["monitor"] == ray.pixel, context
-            assert_account(found["life"], ray, readings, context)
-            held += len(readings)
+            assert pixel["monitor"] == ray.pixel, context
+            compared |= assert_account(pixel["life"], ray, context)
             hit = [bounce for bounce in range(3) if ray.winner(bounce) >= 0]
             lengths.add(len(hit))
             shadows |= {shadow_of(ray, bounce) for bounce in hit if ray.scene.light}
-    assert held > 2 * PIXELS * 50
+    assert compared == {probe.quantity for probe in tapped_probes(config, 0) if not probe.decode}, repeat()
     assert len(lengths) > 1 and 3 in lengths, repeat()
     assert not config.light or {-1, -2} < shadows, repeat()
 
