@@ -10,6 +10,7 @@ import subprocess
 import numpy as np
 import pytest
 from conftest import ROOT
+from generated import examples, options
 from host_software import (
     CONFIG,
     DRIVER_HEADER,
@@ -24,9 +25,10 @@ from host_software import (
     compile_library,
     enumerators,
 )
+from hypothesis import given, reject
 from tcl import run_tcl
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration, ConfigurationError, configure
 from raycaster.convert.take_home import TOP
 from raycaster.engines import ENGINES, EXACT
 from raycaster.golden.engines import model_of
@@ -58,24 +60,13 @@ def device(library) -> Device:
     return Device(library, Registers(CONFIG))
 
 
-VARIED = {
-    "units": 16, "rectangles": 32, "reflections": 2, "rows": 200, "fraction_bits": 5, "rounding": "nearest",
-    "colour_bits": 4, "allow_underrun": True,
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"engine": "exact"},
-        VARIED,
-        {"engine": "beam", "rectangles": 3, "rows": 180},
-        *({"engine": "exact", look: True} for look in EXACT.looks),
-    ],
-    ids=str,
-)
-def test_probe_reads_the_configuration(library, options):
-    config = configure(**options)
+@examples(40)
+@given(options())
+def test_probe_reads_the_configuration(library, chosen):
+    try:
+        config = configure(**chosen)
+    except ConfigurationError:
+        reject()
     found = Device(library, Registers(config)).handle
     version = MAP["version"].fields
     expected = {
@@ -83,7 +74,7 @@ def test_probe_reads_the_configuration(library, options):
         "built_in": 0, "nearest": config.rounding == "nearest",
     }  # fmt: skip
     for name, _ in found._fields_[1:]:
-        assert getattr(found, name) == expected.get(name, getattr(config, name, None)), name
+        assert getattr(found, name) == expected.get(name, getattr(config, name, None)), (name, config)
 
 
 def test_the_header_names_every_engine_and_pattern():

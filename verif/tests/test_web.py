@@ -248,6 +248,5 @@ def test_frames_are_timed(page, whole_site, monkeypatch):
 
 def test_nothing_to_keep_is_refused(tmp_path, refuses):
     file = tmp_path / "web.json"
-    complaint = refuses(lambda: site_main(["--keep", str(file)]))
-    assert complaint == "error: keep: there is nothing to keep without --measure\n"
+    assert refuses(site_main, "--keep", str(file)) == "error: keep: there is nothing to keep without --measure\n"
     assert not file.exists()
