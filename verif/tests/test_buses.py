@@ -13,7 +13,6 @@ from conftest import BUILD, SMALL_SCENE, TINY, Bench, broken
 from raycaster.buses import BRIDGED, OWN
 from raycaster.configuration import ConfigurationError
 from raycaster.convert.write import write_scene_system, write_system
-from raycaster.fpga import verilog
 from raycaster.scene import load_scene
 from raycaster.sim.simulator import SIMULATORS, SimulationError, convert
 from raycaster.verif.seeds import seed
@@ -151,8 +150,3 @@ def test_systems_with_their_own_host_refuse_other_buses(tmp_path, write):
     with pytest.raises(ConfigurationError, match=r"bus: a system with.* processor drives .*; leave out apb$"):
         write(SMALL["apb"], tmp_path / "verilog")
     assert not any(tmp_path.iterdir())
-
-
-def test_an_unknown_bus_gets_one_line(refuses):
-    error = refuses(verilog.main, "--bus", "pci")
-    assert error.startswith("error: bus: ") and "axi4lite, wishbone or apb, got pci" in error

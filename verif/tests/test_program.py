@@ -160,6 +160,18 @@ def test_the_module_and_the_program_print_the_same(words: list[str], tmp_path: P
         ("sim --engine baem", "engine: expected seed, exact or beam, got baem (did you mean beam?)"),
         ("sim --rectangles 99", "rectangles: expected 32 or less, got 99"),
         ("quartus", "board: expected de10_lite, de1_soc, de2 or de2_115, got none"),
+        ("registers --rectangles x", "rectangles: expected a whole number, got x"),
+        ("registers --rectangles 33", "rectangles: expected 32 or less, got 33"),
+        ("game --frames 0", "frames: expected at least 1, got 0"),
+        ("web --keep web.json", "keep: there is nothing to keep without --measure"),
+        ("verilog --bus pci", "bus: expected avalon, axi4lite, wishbone or apb, got pci"),
+        ("verilog PREFIX=9x", "prefix: expected the beginning of a Verilog name, such as ray_caster_, got 9x"),
+        (
+            "tinytapeout boxes --rows 240",
+            "rows: a Tiny Tapeout project shows one pixel per clock; choose ROWS=120, 96 or 60, or ENGINE=beam",
+        ),
+        ("tinytapeout boxes --colour-bits 3", "colour_bits: the Pmod has 2 pins per colour, not 3"),
+        ("tinytapeout boxes --bus apb", "bus: the top drives the registers itself, by Avalon-MM; leave out apb"),
         (
             "sim pool --engine seed",
             f"{packaged_scenes()['pool']}: camera.yaw: the seed engine measures depth along x, so its camera cannot "
@@ -167,10 +179,13 @@ def test_the_module_and_the_program_print_the_same(words: list[str], tmp_path: P
         ),
     ],
 )  # fmt: skip
-def test_a_mistake_gets_one_line_with_a_suggestion(words: str, complaint: str):
+def test_a_mistake_gets_one_line(words: str, complaint: str, tmp_path: Path, monkeypatch):
+    """The line suggests what was meant, and nothing is written."""
+    monkeypatch.chdir(tmp_path)
     with pytest.raises(UserError) as error:
         program.main(words.split())
     assert str(error.value) == complaint
+    assert not any(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-import pytest
-from conftest import ROOT, called
+from conftest import ROOT
 from systemrdl.node import RegNode
 
 from raycaster.configuration import configure
@@ -37,12 +36,3 @@ def test_each_register_and_field_has_a_text():
         "control", "background", "camera", "forward", "right", "up", "light", "corner_0", "corner_1", "surface",
         "pattern",
     }  # fmt: skip
-
-
-@pytest.mark.parametrize("rectangles", ["33", "x"])
-def test_bad_options_get_one_line(tmp_path, rectangles):
-    done = called("registers", "--rectangles", rectangles, cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.startswith("error: rectangles: ")
-    assert done.stderr.count("\n") == 1
-    assert not any(tmp_path.iterdir())

@@ -116,8 +116,3 @@ def test_a_recorded_game(capsys, tmp_path):
     # The animation merges identical frames.
     assert 2 <= Image.open(tmp_path / game.ANIMATION).n_frames <= 14
     assert Image.open(tmp_path / game.SHEET).size == (3 * 320 + 2 * 8, 3 * 240 + 2 * 8)
-
-
-def test_no_frames_are_one_line():
-    with pytest.raises(UserError, match=r"^frames: expected at least 1, got 0$"):
-        game.main(["--frames", "0"])

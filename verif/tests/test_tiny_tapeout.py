@@ -116,17 +116,3 @@ def test_tiles():
     assert [shape_for(tiles) for tiles in (0.1, 1, 1.1, 6.5, 12.9, 16, 16.1)] == [
         "1x1", "1x1", "1x2", "4x2", "8x2", "8x2", None,
     ]  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("option", "value", "complaint"),
-    [
-        ("rows", "240", "a Tiny Tapeout project shows one pixel per clock; choose ROWS=120, 96 or 60, or ENGINE=beam"),
-        ("colour_bits", "3", "the Pmod has 2 pins per colour, not 3"),
-        ("bus", "apb", "the top drives the registers itself, by Avalon-MM; leave out apb"),
-    ],
-)
-def test_bad_options_get_one_line(option, value, complaint, refuses, tmp_path):
-    words = str(SMALL_SCENE), "--output", str(tmp_path / "output"), f"--{option.replace('_', '-')}", value
-    assert refuses(tiny_tapeout.main, *words) == f"error: {option}: {complaint}\n"
-    assert not (tmp_path / "output").exists()

@@ -27,7 +27,6 @@ from raycaster.sw.firmware import build_firmware
 from raycaster.sw.play_script import DEMO, load
 from raycaster.web import speed
 from raycaster.web.site import MODELS, write_site
-from raycaster.web.site import main as site_main
 
 WALK, TINY = (configure(**PAGE_MODELS[name]).screen_geometry for name in ("walk", "exact"))
 VGA = SCREENS["vga", 240]
@@ -244,9 +243,3 @@ def test_frames_are_timed(page, whole_site, monkeypatch):
     assert row["scene"] == "boxes"
     assert min(value for name, value in row.items() if name != "scene") > 0
     assert speed.speed_table([row]).row_count == 1
-
-
-def test_nothing_to_keep_is_refused(tmp_path, refuses):
-    file = tmp_path / "web.json"
-    assert refuses(site_main, "--keep", str(file)) == "error: keep: there is nothing to keep without --measure\n"
-    assert not file.exists()

@@ -122,21 +122,6 @@ def assert_drawn(
 
 
 @of_each_engine
-def test_packaged_scenes(golden, scenes, options):
-    config = design(rectangles=16, **options)
-    drawn, lit = 0, 0
-    for path in sorted(scenes.glob("*.toml")):
-        scene = load_scene(path)
-        if not scene.lacks(config.looks):
-            picture = assert_drawn(golden, config, scene_words(scene, config), path.name)
-            assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 1, path.name
-            drawn += 1
-            lit += scene.light is not None
-    assert drawn > 10
-    assert lit >= 5 or not config.light
-
-
-@of_each_engine
 def test_stiff_catalogue(golden, options):
     config = design(**options)
     cases = catalogue(config.looks)

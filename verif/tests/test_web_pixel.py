@@ -16,7 +16,7 @@ from raycaster.design import Design
 from raycaster.engines import SEED
 from raycaster.scene import load_scene
 from raycaster.verif.seeds import repeat, seed
-from raycaster.web.taps import tap_facts, tapped_probes, tapped_signals
+from raycaster.web.taps import tapped_probes
 
 MODELS = {"exact": "exact", "seed": "seed-0"}
 DESIGNS = {engine: configure(**PAGE_MODELS[model]) for engine, model in MODELS.items()}
@@ -212,11 +212,3 @@ def test_the_tab_shows_shadows(page, site, scenes):
             cells = tables.locator("td:nth-child(2)").all_text_contents()
             assert cells == [text for text in golden for _ in ("hardware", "golden model")], f"{column}, {row}"
     assert not missing, repeat()
-
-
-def test_facts_name_each_tap():
-    for config in DESIGNS.values():
-        facts = tap_facts(config)
-        taps = {tap for probe in facts["probes"] for tap in probe["taps"]} | set(facts["controls"].values())
-        assert taps == set(range(facts["count"]))
-        assert len({len(tapped_signals(config, unit)) for unit in range(config.units)}) == 1
