@@ -26,7 +26,7 @@ from host_software import (
     enumerators,
 )
 from hypothesis import given, reject
-from tcl import run_tcl
+from tcl import tcl_calls
 
 from raycaster.configuration import Configuration, ConfigurationError, configure
 from raycaster.convert.take_home import TOP
@@ -421,14 +421,8 @@ def test_a_cpp_compiler_takes_the_header():
 
 
 def test_the_driver_for_nios(tmp_path):
-    """The description runs in a real Tcl with stub commands, and names existing files and the component."""
-    script = "".join(
-        f"proc {name} {{args}} {{ puts [join [list {name} {{*}}$args] \\t] }}\n"
-        for name in ("create_driver", "set_sw_property", "add_sw_property")
-    )
-    done = run_tcl(tmp_path, f"{script}source {SOFTWARE / 'raycaster_sw.tcl'}\n")
-    assert (done.returncode, done.stderr) == (0, "")
-    calls = [line.split("\t") for line in done.stdout.splitlines()]
+    """The description runs in a real Tcl, and names existing files and the component."""
+    calls = tcl_calls(tmp_path, SOFTWARE / "raycaster_sw.tcl")
     assert calls[0][0] == "create_driver"
     assert ["set_sw_property", "hw_class_name", TOP] in calls
     files = {call[2] for call in calls if call[1] in ("c_source", "include_source")}

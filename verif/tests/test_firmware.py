@@ -24,7 +24,7 @@ PAGE = 0x1000
 
 @pytest.fixture(scope="module")
 def firmware(tmp_path_factory) -> Firmware:
-    pytest.importorskip("ziglang", reason="the extra firmware is not installed")
+    pytest.importorskip("ziglang", reason="the extra play is not installed")
     return build_firmware(tmp_path_factory.mktemp("firmware") / "firmware")
 
 

@@ -108,7 +108,7 @@ def test_missing_picorv32_is_reported(monkeypatch):
 @pytest.mark.slow
 def test_a_recorded_game(capsys, tmp_path):
     """The command writes pictures drawn by the firmware on the tiny screen."""
-    pytest.importorskip("ziglang", reason="the extra firmware is not installed")
+    pytest.importorskip("ziglang", reason="the extra play is not installed")
     assert game.main(["--screen", "tiny", "--frames", "14", "--build", str(BUILD), "--output", str(tmp_path)]) == 0
     said = capsys.readouterr().out
     assert "RayCaster 0." in said and "engine beam" in said

@@ -32,7 +32,7 @@ def unseen(monkeypatch):
 
 @pytest.mark.slow
 def test_the_game_is_played(unseen, tmp_path, capsys):
-    pytest.importorskip("ziglang", reason="the extra firmware is not installed")
+    pytest.importorskip("ziglang", reason="the extra play is not installed")
     shot = tmp_path / "shot.png"
     window.main(["--screen", "tiny", "--frames", "12", "--screenshot", str(shot), "--build", str(BUILD)])
     said = capsys.readouterr().out
