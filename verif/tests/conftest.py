@@ -195,6 +195,15 @@ def run_tool(directory: Path, *command: str, **variables: str) -> subprocess.Com
     )
 
 
+def installed(directory: Path) -> None:
+    """Let make find its files in a directory, and take everything for installed there."""
+    for name in ("Makefile", "pyproject.toml", "constraints.txt"):
+        shutil.copy(ROOT / name, directory)
+    (directory / ".venv").mkdir()
+    for name in ("base", *re.findall(r": EXTRAS := ([\w,]+)$", (ROOT / "Makefile").read_text(), re.MULTILINE)):
+        (directory / ".venv" / name).touch()
+
+
 def make(*words: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
     """Run make as a person would, even if another make runs the tests."""
     command = ["make", *words]

@@ -16,7 +16,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from conftest import BUILD, ROOT, called, make
+from conftest import BUILD, ROOT, called, installed, make
 from rich.console import Console
 
 from raycaster import outcomes
@@ -77,10 +77,7 @@ def test_command(command: str):
 def test_quick_command(command: str, tmp_path: Path):
     """Run the command as a reader would, but in another directory and with the existing environment."""
     assert command in COMMANDS
-    for name in ("Makefile", "pyproject.toml", "constraints.txt"):
-        shutil.copy(ROOT / name, tmp_path)
-    (tmp_path / ".venv").mkdir()
-    (tmp_path / ".venv" / "base").touch()
+    installed(tmp_path)
     done = make(*shlex.split(command)[1:], f"PYTHON={sys.executable}", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     written = re.search(r"build/\S+?(?=[/,;]? |/?$)", done.stdout, re.MULTILINE)

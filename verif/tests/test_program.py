@@ -8,13 +8,12 @@ import importlib.metadata
 import json
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, called, make, write_script
+from conftest import ROOT, called, installed, make, write_script
 
 from raycaster import waits
 from raycaster.cli import __main__ as program
@@ -278,17 +277,6 @@ def test_complaints_are_in_the_users_form(from_make: str, form: str, tmp_path: P
     assert f"{FROM_MAKE}=1 " in recipes.stdout
 
 
-def make_with(directory: Path, script: str, *words: str) -> subprocess.CompletedProcess[str]:
-    """Run make in a directory where everything is installed, with a script as Python."""
-    for name in ("Makefile", "pyproject.toml", "constraints.txt"):
-        shutil.copy(ROOT / name, directory)
-    (directory / ".venv").mkdir(exist_ok=True)
-    for name in ("base", *re.findall(r": EXTRAS := ([\w,]+)$", (ROOT / "Makefile").read_text(), re.MULTILINE)):
-        (directory / ".venv" / name).touch()
-    write_script(directory, "python", script)
-    return make("-s", *words, "PYTHON=./python", cwd=directory)
-
-
 @pytest.mark.parametrize(
     "value",
     ["x;touch bad", "$(shell touch bad)", "`touch bad`", 'it\'s  "q"', "a|b&c*", "two\nlines", "$HOME$$(x)", "#\\ a"],
@@ -296,8 +284,10 @@ def make_with(directory: Path, script: str, *words: str) -> subprocess.Completed
 def test_make_passes_values_on_unchanged(tmp_path: Path, value: str):
     """Neither make nor the shell expands or runs the value, in a recipe or in that of a recursive make."""
     script = f"exec {sys.executable} -c 'import json, sys; print(json.dumps(sys.argv[4:]))' \"$@\""
+    installed(tmp_path)
+    write_script(tmp_path, "python", script)
     for target, more in (("sim", []), ("flash", ["FLASH=1"])):
-        done = make_with(tmp_path, script, target, f"SCENE={value}")
+        done = make("-s", target, f"SCENE={value}", "PYTHON=./python", cwd=tmp_path)
         assert done.returncode == 0, done.stderr
         assert json.loads(done.stdout) == [f"SCENE={value}", *more]
     assert not (tmp_path / "bad").exists()
@@ -305,5 +295,7 @@ def test_make_passes_values_on_unchanged(tmp_path: Path, value: str):
 
 def test_a_failing_line_of_a_recipe_ends_it(tmp_path: Path):
     """All lines of a recipe share a shell, which must stop at the first failure."""
-    done = make_with(tmp_path, 'echo "$*"\nfalse', "lint")
+    installed(tmp_path)
+    write_script(tmp_path, "python", 'echo "$*"\nfalse')
+    done = make("-s", "lint", "PYTHON=./python", cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "-m ruff check\n")
