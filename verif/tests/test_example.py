@@ -96,9 +96,7 @@ def run_outside(directory: Path, example: str, fault: tuple[str, str] | None, *o
         (directory / source.name).write_text(source.read_text().replace(*fault) if fault else source.read_text())
     assert not fault or text.count(fault[0]) == 1
     command = [sys.executable, "-m", "pytest", "-q", "-n", "0", *options]
-    # Optimising a model takes longer than simulating a frame.
-    quick = " ".join(f"OPT_{kind}=-O0" for kind in ("FAST", "SLOW", "GLOBAL"))
-    environment = os.environ | {"WAVES": "1", "GUI": "", "MAKEFLAGS": quick}
+    environment = os.environ | {"WAVES": "1", "GUI": ""}
     done = subprocess.run(command, cwd=directory, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == int(bool(fault)), done.stdout + done.stderr
     return done.stdout
