@@ -13,13 +13,16 @@ import sysconfig
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from raycaster.cli.__main__ import main
 from raycaster.configuration import Configuration, configure
 from raycaster.convert import provenance
+from raycaster.docs.commands import outside_make
 from raycaster.hdl.elaboration import forgetting
 from raycaster.hdl.leaf import Leaf
 from raycaster.options import run_command
@@ -41,6 +44,14 @@ TINY = {
     "beam": configure(engine="beam", screen="tiny", rectangles=3),
 }
 """Designs for the small scene, by engine, for tests to which the design does not matter."""
+
+_LOOKS = {"screen": "tiny", "materials": True, "patterns": True, "reflections": 2}
+PAGE_MODELS = {
+    "walk": {"engine": "beam", "screen": "tiny", "turn": True},
+    "exact": {"engine": "exact", "turn": True, "light": True, **_LOOKS},
+    "seed-0": {"engine": "seed", **_LOOKS},
+}
+"""Options of small models for the web page, by the names of the page's own; all but the walk have taps."""
 
 Bench = Callable[..., Path]
 
@@ -198,6 +209,21 @@ def run_tool(directory: Path, *command: str, **variables: str) -> subprocess.Com
     )
 
 
+def installed(directory: Path) -> None:
+    """Let make find its files in a directory, and take everything for installed there."""
+    for name in ("Makefile", "pyproject.toml", "constraints.txt"):
+        shutil.copy(ROOT / name, directory)
+    (directory / ".venv").mkdir()
+    for name in ("base", *re.findall(r": EXTRAS := ([\w,]+)$", (ROOT / "Makefile").read_text(), re.MULTILINE)):
+        (directory / ".venv" / name).touch()
+
+
+def make(*words: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
+    """Run make as a person would, even if another make runs the tests."""
+    command = ["make", *words]
+    return subprocess.run(command, cwd=cwd, env=outside_make(), capture_output=True, text=True, check=False)
+
+
 @pytest.fixture
 def stand_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str], None]:
     """Return a function that writes a shell script with the name of a program, in the only folder that is searched."""
@@ -224,6 +250,44 @@ def write_script(directory: Path, name: str, text: str = "exit 1") -> None:
     path = directory / name
     path.write_text(f"#!/bin/sh\n{text}\n")
     path.chmod(0o755)
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write the web page with small models."""
+    from raycaster.web.site import Model, write_site  # noqa: PLC0415 - only tests of the page need it
+
+    output = tmp_path_factory.mktemp("site") / "web"
+    models = [Model(name, options, taps=name != "walk") for name, options in PAGE_MODELS.items()]
+    write_site(output, BUILD, Console(quiet=True), models=models, test=True)
+    return output
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Page of a browser that the tests of a file share; `said` has what scripts write on the console."""
+    from raycaster.web.browser import browser_page  # noqa: PLC0415 - only tests of pages need it
+
+    with browser_page() as page:
+        page.set_default_timeout(60_000)
+        page.said = []
+        page.on("console", lambda message: page.said.append(message.text))
+        yield page
+
+
+@pytest.fixture
+def page(browser: Any) -> Iterator[Any]:
+    """Empty page, on whose console nothing may be written."""
+    browser.said.clear()
+    browser.goto("about:blank")
+    yield browser
+    assert browser.said == []
+
+
+def page_state(page: Any, tab: str) -> dict:
+    """Return the state of a tab of the web page once it has a result."""
+    page.wait_for_function(f"RayCaster.state.{tab}?.done || RayCaster.state.{tab}?.error")
+    return page.evaluate(f"RayCaster.state.{tab}")
 
 
 @pytest.fixture

@@ -58,8 +58,7 @@ def worlds(draw: st.DrawFn, lowest: int = 0, highest: int = WORLD_SIZE - 1) -> W
 def engine_options(engine: Engine) -> dict[str, st.SearchStrategy]:
     """Return options of an engine in addition to those of every engine."""
     found: dict[str, st.SearchStrategy] = {"screen": st.sampled_from(sorted({name for name, _ in engine.screens}))}
-    if "turn" in engine.looks:
-        found["turn"] = st.booleans()
+    found |= {look: st.booleans() for look in ("turn", "light") if look in engine.looks}
     if not engine.line_buffered:
         return found | {"scale": st.sampled_from([1, 2, 4])}
     found |= {"units": st.sampled_from([1, 2, 4, 8, 16, 32, 64]), "culling": st.booleans()}

@@ -7,11 +7,13 @@ import ctypes
 import re
 import shutil
 import subprocess
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from enum import IntEnum
+from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+from conftest import ROOT
 
 from raycaster.configuration import Configuration, configure
 from raycaster.memory_map import BUTTON_NAMES
@@ -19,7 +21,6 @@ from raycaster.registers import register_map
 from raycaster.scene import Basis
 from raycaster.sim.register_model import LiveScene, RegisterFile, Request
 
-ROOT = Path(__file__).parents[2]
 SOFTWARE = ROOT / "sw"
 COMPILER = shutil.which("gcc") or shutil.which("cc")
 STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror")
@@ -91,13 +92,7 @@ class Header:
 
 
 HEADER = Header(DRIVER_HEADER, GAME_HEADER)
-Point, Colour, Turned, RayCaster = (HEADER[f"raycaster{name}"] for name in ("_point", "_colour", "_basis", ""))
-Game = HEADER["game"]
-
-
-def turned(basis: Basis) -> ctypes.Structure:
-    """Convert a basis to C."""
-    return Turned(*map(tuple, basis))
+RayCaster, Game = HEADER["raycaster"], HEADER["game"]
 
 
 def basis_of(turned: ctypes.Structure) -> Basis:
@@ -115,15 +110,6 @@ def compile_library(directory: Path, *sources: str | Path, flags: Sequence[str |
     return loaded
 
 
-def run_c(directory: Path, program: str) -> str:
-    """Compile and run a C program that includes headers of a directory; return what it prints."""
-    (directory / "program.c").write_text(program)
-    subprocess.run(
-        [COMPILER, "-std=gnu11", "-Wall", "-Werror", "program.c", "-o", "program"], cwd=directory, check=True
-    )
-    return subprocess.run([directory / "program"], capture_output=True, text=True, check=True).stdout
-
-
 class Registers:
     """Registers of a ray tracer, without the rest; StartScreen comes on demand.
 
@@ -133,12 +119,16 @@ class Registers:
         polls_to_frame: reads of the pending interrupt until the next StartScreen, or None for never.
     """
 
-    def __init__(self, config: Configuration):
+    def __init__(self, config: Configuration, **said: dict[str, int]):
+        """Make the registers of a design; some read-only registers say something else than the design's facts."""
         self.file = RegisterFile(config)
         self.written: list[tuple[int, int]] = []
         self.polls_to_frame: int | None = None
         self._pending = 4 * register_map(config.rectangles)["irq_pending"].address
         self.file.clock(True, None)
+        words, known = self.file.agent._constants, self.file.agent.registers
+        for name, fields in said.items():
+            words[name] = known[name].pack(**known[name].unpack(words[name]) | fields)
 
     def read(self, offset: int) -> int:
         """Read the word at an offset in bytes."""
@@ -172,29 +162,52 @@ class Registers:
         self.file.clock(False, None)
         return self.file.live
 
-    def say(self, register: str, **fields: int) -> None:
-        """Change what some fields of a read-only register return."""
-        words, known = self.file.agent._constants, self.file.agent.registers[register]
-        words[register] = known.pack(**{**known.unpack(words[register]), **fields})
+
+class HostBus(ctypes.Structure):
+    """The functions in `host_bus.h` through which the driver reads and writes registers."""
+
+    _fields_ = [("read", _Read), ("write", _Write)]
 
 
-@contextmanager
-def attached(library: ctypes.CDLL, registers: Registers) -> Iterator[None]:
-    """Connect the driver in a library to registers."""
+class Device:
+    """A ray tracer's registers, and the driver's functions for them, without prefix and handle.
 
-    class HostBus(ctypes.Structure):
-        _fields_ = [("read", _Read), ("write", _Write)]
+    Attributes:
+        handle: the driver's handle.
+        found: result of the probe.
+        errors: results of calls that failed, in order.
+    """
 
-    bus = HostBus.in_dll(library, "host_bus")
-    bus.read, bus.write = _Read(registers.read), _Write(registers.write)
-    yield
+    def __init__(self, library: ctypes.CDLL, registers: Registers):
+        self.registers = registers
+        self.handle = RayCaster()
+        self.errors: list[Error] = []
+        self._library = library
+        self._functions = _Read(registers.read), _Write(registers.write)
+        self.found: Error = self.probe(None)
 
+    def call(self, function: str, *arguments: Any) -> Any:
+        """Call any function of the library with the driver connected to these registers; tuples become structures."""
+        bus = HostBus.in_dll(self._library, "host_bus")
+        bus.read, bus.write = self._functions
+        called = getattr(self._library, function)
+        kinds = called.argtypes or ()
+        given = [
+            getattr(kind, "_type_", kind)(*one) if isinstance(one, tuple) else one
+            for kind, one in zip(kinds, arguments, strict=True)
+        ]
+        result = called(*given)
+        if isinstance(result, Error) and result != Error.OK:
+            self.errors.append(result)
+        return result
 
-def probed(library: ctypes.CDLL) -> RayCaster:
-    """Return the handle of the attached device."""
-    device = RayCaster()
-    assert library.raycaster_probe(device, None) == Error.OK
-    return device
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        return partial(self.call, f"raycaster_{name}", self.handle)
+
+    def shown(self) -> LiveScene:
+        """Commit, and return what is live from the next frame on."""
+        assert self.commit() == Error.OK
+        return self.registers.start_screen()
 
 
 class Frame(NamedTuple):
@@ -212,16 +225,14 @@ class Session:
         self.software = library
         self.game = Game()
         self.registers = Registers(config)
-        with attached(library, self.registers):
-            self.device = probed(library)
-            library.raycaster_set_run(self.device, True)
-            assert library.raycaster_set_reflections(self.device, 1) == Error.OK
+        self.device = Device(library, self.registers)
+        self.device.set_run(True)
+        assert self.device.set_reflections(1) == Error.OK
         library.game_init(self.game, seed)
 
     def draw(self) -> Error:
         """Draw; return the driver's error."""
-        with attached(self.software, self.registers):
-            return self.software.game_draw(self.game, self.device)
+        return self.device.call("game_draw", self.game, self.device.handle)
 
     def step(self, buttons: int) -> set[str]:
         """Run a frame with these buttons, without drawing; return its events."""
@@ -239,10 +250,8 @@ class Session:
             events = self.step(buttons)
             assert self.draw() == Error.OK
             written = list(self.registers.written)
-            with attached(self.software, self.registers):
-                assert self.software.raycaster_commit(self.device) == Error.OK
-                live = self.registers.start_screen()
-                assert self.software.raycaster_check(self.device) == Error.OK
+            live = self.device.shown()
+            assert self.device.check() == Error.OK
             yield Frame(events, live, written)
 
     def start(self) -> None:

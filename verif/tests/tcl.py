@@ -25,8 +25,10 @@ proc unknown args {
 """Commands that Tcl does not know are Intel's: each call is printed as a line, and returns its last argument."""
 
 
-def run_tcl(directory: Path, script: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run a script in a directory, with arguments.
+def tcl_calls(directory: Path, script: Path, settings: str = "") -> list[list[str]]:
+    """Return the calls of Intel's commands by a script that runs in a directory: each call's name and arguments.
+
+    The settings are Tcl that runs before the script. An error in the script is an AssertionError with its first line.
 
     Raises:
         UserError: Tcl is missing.
@@ -34,18 +36,8 @@ def run_tcl(directory: Path, script: str, *arguments: str) -> subprocess.Complet
     program = ensure_tools.find("tcl")
     if program is None:
         raise ensure_tools.missing("tcl")
-    main = directory / "main.tcl"
-    main.write_text(script)
-    command = [program, main.name, *arguments]
-    return subprocess.run(command, cwd=directory, capture_output=True, text=True, check=False)
-
-
-def tcl_calls(directory: Path, script: Path, settings: str = "") -> list[list[str]]:
-    """Return the calls of Intel's commands by a script that runs in a directory: each call's name and arguments.
-
-    The settings are Tcl that runs before the script. An error in the script is an AssertionError with its first line.
-    """
-    done = run_tcl(directory, f"{RECORD}\n{settings}\nsource {{{script}}}\n")
+    (directory / "main.tcl").write_text(f"{RECORD}\n{settings}\nsource {{{script}}}\n")
+    done = subprocess.run([program, "main.tcl"], cwd=directory, capture_output=True, text=True, check=False)
     assert not done.returncode, done.stderr.splitlines()[0]
     return [line.split("\t") for line in done.stdout.splitlines()]
 

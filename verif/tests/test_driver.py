@@ -6,32 +6,29 @@ from __future__ import annotations
 import ctypes
 import re
 import subprocess
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
+from conftest import ROOT
+from generated import examples, options
 from host_software import (
     CONFIG,
     DRIVER_HEADER,
-    ROOT,
+    HEADER,
     SOFTWARE,
     STRICT,
-    Colour,
+    Device,
     Error,
-    Point,
     RayCaster,
     Registers,
-    attached,
     basis_of,
     compile_library,
     enumerators,
-    probed,
-    turned,
 )
-from tcl import run_tcl
+from hypothesis import given, reject
+from tcl import tcl_calls
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration, ConfigurationError, configure
 from raycaster.convert.take_home import TOP
 from raycaster.engines import ENGINES, EXACT
 from raycaster.golden.engines import model_of
@@ -48,8 +45,8 @@ EVERYTHING = configure(engine="exact", screen="tiny", **dict.fromkeys(EXACT.look
 """Design with all features that scenes may need."""
 
 LARGE = configure(engine="beam", screen="tiny", rectangles=32)
-WHITE = Colour(255, 255, 255)
-OUTSIDE = [Point(*np.roll((value, 0, 0), axis).tolist()) for axis in range(3) for value in (512, 0xFFFF)]
+WHITE, ORIGIN = (255, 255, 255), (0, 0, 0)
+OUTSIDE = [tuple(np.roll((value, 0, 0), axis).tolist()) for axis in range(3) for value in (512, 0xFFFF)]
 PAGE = ROOT / "docs" / "integration.md"
 
 
@@ -58,59 +55,26 @@ def library(tmp_path_factory) -> ctypes.CDLL:
     return compile_library(tmp_path_factory.mktemp("driver"), "raycaster.c")
 
 
-class Device:
-    """Registers of a design, and the driver's functions for them, without prefix and handle."""
-
-    def __init__(self, library: ctypes.CDLL, config=CONFIG, **said: dict[str, int]):
-        self.registers = Registers(config)
-        self._library = library
-        for register, fields in said.items():
-            self.registers.say(register, **fields)
-        with attached(library, self.registers):
-            self.handle = probed(library)
-
-    def __getattr__(self, name: str) -> Callable[..., Any]:
-        def call(*arguments: Any) -> Any:
-            with attached(self._library, self.registers):
-                return getattr(self._library, f"raycaster_{name}")(self.handle, *arguments)
-
-        return call
-
-    def shown(self) -> LiveScene:
-        """Commit, and return what is live from the next frame on."""
-        assert self.commit() == Error.OK
-        return self.registers.start_screen()
-
-
 @pytest.fixture
 def device(library) -> Device:
-    return Device(library)
+    return Device(library, Registers(CONFIG))
 
 
-@pytest.mark.parametrize(
-    "config",
-    [
-        CONFIG,
-        configure(
-            units=16, rectangles=32, reflections=2, rows=200, fraction_bits=5, rounding="nearest", colour_bits=4,
-            allow_underrun=True,
-        ),
-        configure(engine="beam", rectangles=3, rows=180),
-        configure(engine="exact", turn=True, patterns=True),
-        configure(engine="exact", light=True),
-        configure(engine="beam", materials=True),
-    ],
-    ids=lambda config: config.name,
-)  # fmt: skip
-def test_probe_reads_the_configuration(library, config):
-    found = Device(library, config).handle
+@examples(40)
+@given(options())
+def test_probe_reads_the_configuration(library, chosen):
+    try:
+        config = configure(**chosen)
+    except ConfigurationError:
+        reject()
+    found = Device(library, Registers(config)).handle
     version = MAP["version"].fields
     expected = {
         "major": version["major"].reset, "minor": version["minor"].reset, "engine": config.facts.code,
         "built_in": 0, "nearest": config.rounding == "nearest",
     }  # fmt: skip
     for name, _ in found._fields_[1:]:
-        assert getattr(found, name) == expected.get(name, getattr(config, name, None)), name
+        assert getattr(found, name) == expected.get(name, getattr(config, name, None)), (name, config)
 
 
 def test_the_header_names_every_engine_and_pattern():
@@ -129,11 +93,9 @@ def test_the_header_names_every_engine_and_pattern():
     ],
 )
 def test_probe_refuses_others(library, register, fields, expected):
-    registers = Registers(CONFIG)
-    registers.say(register, **fields)
-    with attached(library, registers):
-        assert library.raycaster_probe(RayCaster(), None) == expected
-    assert not registers.written
+    device = Device(library, Registers(CONFIG, **{register: fields}))
+    assert device.found == expected
+    assert not device.registers.written
 
 
 class ShownWhenPolled(Registers):
@@ -165,8 +127,7 @@ def test_the_programs_of_the_page(language, tmp_path):
     if language == "c":
         (tmp_path / "main.c").write_text(program)
         library = compile_library(tmp_path, "raycaster.c", tmp_path / "main.c")
-        with attached(library, model):
-            assert library.main() == 0
+        assert Device(library, model).call("main") == 0
     else:
         names: dict = {}
         exec(program.replace("0x40000000", "0"), names)
@@ -182,23 +143,23 @@ def test_the_programs_of_the_page(language, tmp_path):
 
 def draw(device: Device, scene: Scene, config: Configuration) -> LiveScene:
     """Show a scene through the driver."""
-    assert device.set_background(Colour(*scene.background)) == Error.OK
-    assert device.set_camera(Point(*scene.camera.position)) == Error.OK
+    device.set_background(scene.background)
+    device.set_camera(scene.camera.position)
     if config.turn:
-        assert device.set_basis(turned(scene.camera.basis)) == Error.OK
+        device.set_basis(scene.camera.basis)
     if scene.light:
-        assert device.set_light(Point(*scene.light.position), round(4 * scene.light.shade)) == Error.OK
+        device.set_light(scene.light.position, scene.light.quarters)
     for index, one in enumerate(scene.rect):
-        corners = [Point(*corner) for corner in one.corners]
-        assert device.set_rectangle(index, *corners, Colour(*one.colour)) == Error.OK
+        device.set_rectangle(index, *one.corners, one.colour)
         if config.materials:
-            assert device.set_mirror(index, one.quarters) == Error.OK
+            device.set_mirror(index, one.quarters)
         if one.kind:
-            assert device.set_pattern(index, one.kind, one.cell, Colour(*one.colour2)) == Error.OK
+            device.set_pattern(index, one.kind, one.cell, one.colour2)
     for index in range(len(scene.rect), config.rectangles):
-        assert device.enable_rectangle(index, False) == Error.OK
+        device.enable_rectangle(index, False)
     device.set_run(True)
-    assert device.set_reflections(scene.reflections) == Error.OK
+    device.set_reflections(scene.reflections)
+    assert device.errors == []
     return device.shown()
 
 
@@ -206,7 +167,7 @@ def test_a_scene_gives_the_same_words_as_the_project(library, scenes):
     for scene in map(load_scene, sorted(scenes.glob("*.toml"))):
         if scene.reflections > CONFIG.reflections or scene.lacks(()):
             continue
-        device = Device(library)
+        device = Device(library, Registers(CONFIG))
         draw(device, scene, CONFIG)
         # Run and reflections share a register with commit, and each is written separately.
         *others, _, _, commit = device.registers.written
@@ -216,7 +177,7 @@ def test_a_scene_gives_the_same_words_as_the_project(library, scenes):
 @pytest.mark.parametrize("config", [CONFIG, EVERYTHING, LARGE], ids=lambda config: config.name)
 def test_any_scene_is_shown(library, config):
     """Random scenes, drawn one after another, become live whole and unchanged; new rectangles have default looks."""
-    device = Device(library, config)
+    device = Device(library, Registers(config))
     for number in range(24):
         scene = random_scene(100 * seed() + number, config.rectangles, 1, config.looks)
         live = draw(device, scene, config)
@@ -236,11 +197,11 @@ def test_any_scene_is_shown(library, config):
 
 
 OF_A_RECTANGLE = {
-    "set_rectangle": (0, Point(), Point(), WHITE), "enable_rectangle": (0, True), "set_mirror": (0, 1),
+    "set_rectangle": (0, ORIGIN, ORIGIN, WHITE), "enable_rectangle": (0, True), "set_mirror": (0, 1),
     "set_pattern": (0, 1, 8, WHITE),
 }  # fmt: skip
-OF_LOOKS = {"set_basis": (turned(UNTURNED),), "set_light": (Point(1, 2, 3), 2), "clear_light": ()}
-CALLS = OF_A_RECTANGLE | OF_LOOKS | {"set_camera": (Point(),), "set_background": (WHITE,), "set_reflections": (1,)}
+OF_LOOKS = {"set_basis": (UNTURNED,), "set_light": ((1, 2, 3), 2), "clear_light": ()}
+CALLS = OF_A_RECTANGLE | OF_LOOKS | {"set_camera": (ORIGIN,), "set_background": (WHITE,), "set_reflections": (1,)}
 """Valid arguments by function."""
 
 
@@ -255,9 +216,9 @@ CALLS = OF_A_RECTANGLE | OF_LOOKS | {"set_camera": (Point(),), "set_background":
 )
 def test_parts_that_cannot_be_set(library, config, built_in, error, refused):
     """They are not in the hardware, or built into it; nothing is written."""
-    size = {"rectangles": 0} if built_in else {}
+    said = {"engine": {"fixed": built_in}, "size": {"rectangles": 0}} if built_in else {}
     for function, arguments in CALLS.items():
-        device = Device(library, config, engine={"fixed": built_in}, size=size)
+        device = Device(library, Registers(config, **said))
         expected = error if function in refused else Error.OK
         assert getattr(device, function)(*arguments) == expected, function
         assert bool(device.registers.written) == (expected == Error.OK)
@@ -273,20 +234,20 @@ REFUSED = [
         (Error.OUTSIDE_WORLD, *call)
         for place in OUTSIDE
         for call in (
-            ("set_rectangle", 0, place, Point(), WHITE), ("set_rectangle", 0, Point(), place, WHITE),
+            ("set_rectangle", 0, place, ORIGIN, WHITE), ("set_rectangle", 0, ORIGIN, place, WHITE),
             ("set_rectangle", 0, place, place, WHITE), ("set_camera", place), ("set_light", place, 0),
         )
     ),
     *(
-        (Error.OUTSIDE_WORLD, "set_basis", turned(np.roll([part] + 8 * [0], place).reshape(3, 3).tolist()))
-        for place in range(9)
+        (Error.OUTSIDE_WORLD, "set_basis", tuple(map(tuple, np.roll([part] + 8 * [0], at).reshape(3, 3).tolist())))
+        for at in range(9)
         for part in (512, -513)
     ),
-    (Error.NO_PLANE, "set_rectangle", 0, Point(0, 1, 2), Point(1, 2, 3), WHITE),
+    (Error.NO_PLANE, "set_rectangle", 0, (0, 1, 2), (1, 2, 3), WHITE),
     *((Error.NO_SUCH_LOOK, "set_mirror", 0, quarters) for quarters in (5, 8, 0xFFFFFFFF)),
     *((Error.NO_SUCH_LOOK, "set_pattern", 0, kind, 32, WHITE) for kind in (len(PATTERNS), 0xFFFFFFFF)),
     *((Error.NO_SUCH_LOOK, "set_pattern", 0, 1, cell, WHITE) for cell in (0, 4, 12, 257, 512, 0x80000000)),
-    (Error.NO_SUCH_LOOK, "set_light", Point(), 4),
+    (Error.NO_SUCH_LOOK, "set_light", ORIGIN, 4),
     (Error.TOO_MANY_REFLECTIONS, "set_reflections", 2),
 ]  # fmt: skip
 """Errors of functions with wrong arguments."""
@@ -294,7 +255,7 @@ REFUSED = [
 
 def test_wrong_arguments(library):
     """The call is refused, and nothing is written."""
-    device = Device(library, EVERYTHING)
+    device = Device(library, Registers(EVERYTHING))
     for error, function, *arguments in REFUSED:
         assert getattr(device, function)(*arguments) == error, (function, arguments)
     assert not device.registers.written
@@ -302,25 +263,26 @@ def test_wrong_arguments(library):
 
 def test_a_rectangle_is_left_out_and_shown_again(library):
     """It keeps its contents and looks. A point and the ends of the table are accepted."""
-    device = Device(library, EVERYTHING)
-    for index, corners in ((0, (Point(7, 8, 9), Point(7, 8, 9))), (11, (Point(1, 2, 3), Point(1, 20, 511)))):
-        assert device.set_rectangle(index, *corners, Colour(1, 2, 3)) == Error.OK
-        assert device.set_mirror(index, 3) == Error.OK
-        assert device.set_pattern(index, 3, 16, WHITE) == Error.OK
+    device = Device(library, Registers(EVERYTHING))
+    for index, corners in ((0, ((7, 8, 9), (7, 8, 9))), (11, ((1, 2, 3), (1, 20, 511)))):
+        device.set_rectangle(index, *corners, (1, 2, 3))
+        device.set_mirror(index, 3)
+        device.set_pattern(index, 3, 16, WHITE)
         for enable in (False, True):
-            assert device.enable_rectangle(index, enable) == Error.OK
+            device.enable_rectangle(index, enable)
             live = device.shown().rectangles
             assert live.enabled[index] == enable
-            assert live.corners[index].tolist() == [[corner.x, corner.y, corner.z] for corner in corners]
+            assert live.corners[index].tolist() == [list(corner) for corner in corners]
             assert live.colours[index].tolist() == [1, 2, 3]
             assert (live.mirrors[index], live.kinds[index], live.cells[index]) == (3, 3, 16)
+    assert device.errors == []
 
 
 def test_the_longest_vectors(library):
     basis = ((-512, 511, 0), (1, -1, 256), (511, -512, -511))
-    device = Device(library, EVERYTHING)
+    device = Device(library, Registers(EVERYTHING))
     assert device.shown().basis == UNTURNED
-    assert device.set_basis(turned(basis)) == Error.OK
+    assert device.set_basis(basis) == Error.OK
     assert device.shown().basis == basis
 
 
@@ -352,8 +314,9 @@ def test_a_commit_waits_for_the_one_before(device):
     assert device.commit() == Error.OK
     assert device.is_committing()
     # Changes from now on belong to the next commit and must not trigger one.
-    assert device.set_reflections(1) == Error.OK
-    assert device.set_camera(Point(1, 2, 3)) == Error.OK
+    device.set_reflections(1)
+    device.set_camera((1, 2, 3))
+    assert device.errors == []
     written = len(device.registers.written)
     assert device.commit() == Error.STILL_COMMITTING
     assert len(device.registers.written) == written
@@ -449,7 +412,7 @@ def test_plain_memory_and_no_library(tmp_path, standard, level):
     device = RayCaster()
     assert library.raycaster_probe(device, memory) == Error.OK
     assert (device.units, device.rectangles, device.rows) == (4, 12, 240)
-    assert library.raycaster_set_camera(device, Point(1, 2, 3)) == Error.OK
+    assert library.raycaster_set_camera(device, HEADER["raycaster_point"](1, 2, 3)) == Error.OK
     assert memory[MAP["camera"].address] == MAP["camera"].pack(x=1, y=2, z=3)
 
 
@@ -458,14 +421,8 @@ def test_a_cpp_compiler_takes_the_header():
 
 
 def test_the_driver_for_nios(tmp_path):
-    """The description runs in a real Tcl with stub commands, and names existing files and the component."""
-    script = "".join(
-        f"proc {name} {{args}} {{ puts [join [list {name} {{*}}$args] \\t] }}\n"
-        for name in ("create_driver", "set_sw_property", "add_sw_property")
-    )
-    done = run_tcl(tmp_path, f"{script}source {SOFTWARE / 'raycaster_sw.tcl'}\n")
-    assert (done.returncode, done.stderr) == (0, "")
-    calls = [line.split("\t") for line in done.stdout.splitlines()]
+    """The description runs in a real Tcl, and names existing files and the component."""
+    calls = tcl_calls(tmp_path, SOFTWARE / "raycaster_sw.tcl")
     assert calls[0][0] == "create_driver"
     assert ["set_sw_property", "hw_class_name", TOP] in calls
     files = {call[2] for call in calls if call[1] in ("c_source", "include_source")}

@@ -26,24 +26,22 @@ def machine(tmp_path, monkeypatch) -> Callable[..., None]:
     return make
 
 
+@pytest.mark.parametrize("uid", [0, 1000])
 @pytest.mark.parametrize(
-    ("tool", "manager", "uid", "expected"),
+    ("manager", "icarus", "chromium"),
     [
-        ("icarus", "apt-get", 0, "apt-get install -y -q iverilog"),
-        ("icarus", "apt-get", 1000, "sudo apt-get install -y -q iverilog"),
-        ("icarus", "dnf", 1000, "sudo dnf install -y -q iverilog"),
-        ("icarus", "pacman", 0, "pacman -S --noconfirm --needed iverilog"),
-        ("icarus", "brew", 1000, "brew install icarus-verilog"),
-        ("chromium", "apt-get", 0, "apt-get install -y -q chromium"),
-        ("chromium", "dnf", 1000, "sudo dnf install -y -q chromium"),
-        ("chromium", "pacman", 0, "pacman -S --noconfirm --needed chromium"),
-        ("chromium", "brew", 1000, "brew install --cask google-chrome"),
+        ("apt-get", "install -y -q iverilog", "install -y -q chromium"),
+        ("dnf", "install -y -q iverilog", "install -y -q chromium"),
+        ("pacman", "-S --noconfirm --needed iverilog", "-S --noconfirm --needed chromium"),
+        ("brew", "install icarus-verilog", "install --cask google-chrome"),
     ],
 )
-def test_install_command(machine, tool, manager, uid, expected):
-    """The available package manager is used, through sudo unless the user is root."""
+def test_install_command(machine, manager, icarus, chromium, uid):
+    """The available package manager is used, through sudo unless the user is root or it needs none."""
     machine(uid, **{manager: "exit 1"})
-    assert " ".join(install_command(tool)) == expected
+    program = f"sudo {manager}" if uid and manager != "brew" else manager
+    for tool, expected in (("icarus", icarus), ("chromium", chromium)):
+        assert " ".join(install_command(tool)) == f"{program} {expected}"
 
 
 @pytest.mark.parametrize(

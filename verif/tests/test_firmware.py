@@ -4,25 +4,27 @@
 from __future__ import annotations
 
 import re
-import shutil
 from pathlib import Path
 
 import pytest
 from conftest import called
 from host_software import CONFIG, FIRE, Registers, Session, compile_library
 
+from raycaster.errors import UserError
 from raycaster.memory_map import BUTTONS, MEMORY, MEMORY_BYTES, RAY_TRACER, UART, UART_BUSY, c_header
 from raycaster.registers import register_map
 from raycaster.sim.register_model import LiveScene
 from raycaster.sw.firmware import FIRMWARE, SOURCES, Firmware, build_firmware, main
 from raycaster.sw.play_script import DEMO, load
+from raycaster.tools import ToolError
 
+MAP = register_map(CONFIG.rectangles)
 PAGE = 0x1000
 
 
 @pytest.fixture(scope="module")
 def firmware(tmp_path_factory) -> Firmware:
-    pytest.importorskip("ziglang", reason="the extra firmware is not installed")
+    pytest.importorskip("ziglang", reason="the extra play is not installed")
     return build_firmware(tmp_path_factory.mktemp("firmware") / "firmware")
 
 
@@ -34,12 +36,11 @@ class Machine:
         frames: for each frame, the words written to the ray tracer and the number of instructions.
     """
 
-    def __init__(self, words: Path, script: tuple[int, ...], registers: Registers):
-        self._unicorn = unicorn = pytest.importorskip("unicorn")
+    def __init__(self, words: Path, script: tuple[int, ...], registers: Registers | None = None):
+        unicorn = pytest.importorskip("unicorn")
         self._script = script
-        self._registers = registers
-        self._busy = 0
-        self._instructions = 0
+        self._registers = registers or Registers(CONFIG)
+        self._busy = self._instructions = 0
         self._block = -1
         self.said = ""
         self.frames: list[tuple[list[tuple[int, int]], int]] = []
@@ -53,10 +54,8 @@ class Machine:
         uc.mmio_map(BUTTONS, PAGE, self._read_rest, None, self._write_rest, None)
         uc.hook_add(unicorn.UC_HOOK_BLOCK, self._count)
         uc.hook_add(unicorn.UC_HOOK_MEM_READ | unicorn.UC_HOOK_MEM_WRITE, self._check_access)
-
-    def run(self) -> None:
-        """Run until the script or main ends."""
-        self.uc.emu_start(MEMORY, MEMORY_BYTES, count=20_000_000)
+        # Until the script or main ends.
+        uc.emu_start(MEMORY, MEMORY_BYTES, count=20_000_000)
 
     def _count(self, uc, address, size, _) -> None:
         self._instructions += size // 4
@@ -71,7 +70,7 @@ class Machine:
 
     def _read_registers(self, uc, offset, size, _) -> int:
         assert size == 4
-        if offset == 4 * register_map(CONFIG.rectangles)["irq_pending"].address:
+        if offset == 4 * MAP["irq_pending"].address:
             self._close_frame()
             self._registers.polls_to_frame = self._registers.polls_to_frame or 3
         return self._registers.read(offset)
@@ -112,9 +111,8 @@ def test_the_memory_map_for_c_is_up_to_date():
 
 def test_the_demo_is_played_as_on_the_host(firmware, tmp_path):
     script = load(DEMO)[:430]
-    machine = Machine(firmware.words, script, Registers(CONFIG))
-    machine.run()
-    version = register_map(CONFIG.rectangles)["version"].fields
+    machine = Machine(firmware.words, script)
+    version = MAP["version"].fields
     assert machine.said.splitlines() == [
         f"RayCaster {version['major'].reset}.{version['minor'].reset}, engine exact, units {CONFIG.units}, "
         "rectangles 12, rows 48, reflections 1, scale 1, fixed 0",
@@ -123,21 +121,17 @@ def test_the_demo_is_played_as_on_the_host(firmware, tmp_path):
     ]
     assert len(machine.frames) == len(script)
     host = Session(compile_library(tmp_path, "raycaster.c", "game/game.c"))
-    status = 4 * register_map(CONFIG.rectangles)["status"].address
     for number, (expected, (written, _)) in enumerate(zip(host.play(script), machine.frames, strict=True)):
         # The last two writes commit the picture and clear the errors.
         assert written[:-2] == expected.written, f"frame {number}"
-        assert written[-1][0] == status
+        assert written[-1][0] == 4 * MAP["status"].address
     # A PicoRV32 takes about five cycles per instruction, and a frame is 420,000 cycles at 25 MHz.
-    instructions = [count for _, count in machine.frames]
-    print(f"instructions per frame: at most {max(instructions)}, mean {sum(instructions) / len(instructions):.0f}")
-    assert max(instructions) < 420_000 / 5 / 2
+    assert max(instructions for _, instructions in machine.frames) < 420_000 / 5 / 2
 
 
 def test_a_lost_game_is_reported(firmware):
     corner = 0b0101
-    machine = Machine(firmware.words, (0, FIRE) + (corner,) * 700, Registers(CONFIG))
-    machine.run()
+    machine = Machine(firmware.words, (0, FIRE) + (corner,) * 700)
     assert re.search(r"^game over, score \d+\r$", machine.said, re.M)
 
 
@@ -151,10 +145,7 @@ def test_a_lost_game_is_reported(firmware):
     ],
 )
 def test_errors_are_reported_once(firmware, register, fields, complaint):
-    registers = Registers(CONFIG)
-    registers.say(register, **fields)
-    machine = Machine(firmware.words, (0,) * 5, registers)
-    machine.run()
+    machine = Machine(firmware.words, (0,) * 5, Registers(CONFIG, **{register: fields}))
     assert machine.said.count(complaint) == 1
     assert machine.said.endswith(f"{complaint}\r\n")
 
@@ -171,7 +162,6 @@ def test_an_underrun_is_reported(firmware, frame, reports):
     registers = Late(CONFIG)
     registers.file.agent.underrun = frame == 0
     machine = Machine(firmware.words, (0,) * 9, registers)
-    machine.run()
     assert machine.said.count("ray tracer: a row was not complete in time\r\n") == reports
     assert not registers.file.agent.underrun
 
@@ -198,15 +188,15 @@ def test_the_command(firmware, tmp_path):
 @pytest.mark.parametrize("missing", ["ziglang", "elftools"])
 def test_a_missing_tool_is_one_line(tmp_path, monkeypatch, missing):
     monkeypatch.setattr("raycaster.sw.firmware.find_spec", lambda name: None if name == missing else name)
-    with pytest.raises(Exception, match=rf"^{missing} is missing; it comes with the extra play: "):
+    with pytest.raises(UserError, match=rf"^{missing} is missing; it comes with the extra play: "):
         main(["--output", str(tmp_path / "output")])
     assert not any(tmp_path.iterdir())
 
 
 def test_a_program_that_does_not_compile(firmware, tmp_path):
+    start, program, *others = SOURCES
     broken = tmp_path / "broken.c"
-    shutil.copy(SOURCES[1], broken)
-    broken.write_text(broken.read_text().replace("int main(void) {", "int main(void) { int unused;"))
-    with pytest.raises(Exception, match=r"the compiler failed:\n.*unused"):
-        build_firmware(tmp_path / "output", (SOURCES[0], broken, *SOURCES[2:]))
+    broken.write_text(program.read_text().replace("int main(void) {", "int main(void) { int unused;"))
+    with pytest.raises(ToolError, match=r"the compiler failed:\n.*unused"):
+        build_firmware(tmp_path / "output", (start, broken, *others))
     assert not (tmp_path / "output").exists()

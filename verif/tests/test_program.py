@@ -5,23 +5,20 @@ from __future__ import annotations
 
 import importlib
 import importlib.metadata
-import importlib.util
 import json
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, called
+from conftest import ROOT, called, installed, make, write_script
 
 from raycaster import waits
 from raycaster.cli import __main__ as program
 from raycaster.cli import completion
 from raycaster.cli.commands import COMMANDS, NOT_OF_MAKE, Command, overview, verify_overview
-from raycaster.docs.commands import outside_make
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.hdl.elaboration import elaboration
@@ -32,6 +29,7 @@ from raycaster.rtl.common.records import Colour
 from raycaster.scene import packaged_scenes
 
 SCREEN_LINES, MOST_LINES, COLUMNS = 24, 40, 80
+VERSION = importlib.metadata.version("raycaster")
 
 
 @pytest.mark.parametrize("text", [overview(), overview(from_make=True), verify_overview()])
@@ -63,47 +61,42 @@ def test_help(name: str, monkeypatch):
     assert not any("--divider-bits" in line for line in lines)
 
 
-def test_options_lists_the_rest(capsys):
-    assert program.main(["options"]) == 0
-    assert "--divider-bits" in capsys.readouterr().out
-
-
-def made(directory: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    """Run make in a directory, as if it were not run by another make."""
-    command = ["make", *words]
-    return subprocess.run(command, cwd=directory, env=outside_make(), capture_output=True, text=True, check=False)
+@pytest.mark.parametrize(("words", "printed"), [("options", "--divider-bits"), ("--version", f"raycaster {VERSION}\n")])
+def test_prints(words: str, printed: str, capsys):
+    assert program.main([words]) == 0
+    assert printed in capsys.readouterr().out
 
 
 def test_make_help_installs_nothing(tmp_path: Path):
     """It works in a clone without an environment and leaves the clone unchanged."""
     (tmp_path / "Makefile").write_text((ROOT / "Makefile").read_text())
     (tmp_path / "cli").symlink_to(ROOT / "cli")
-    done = made(tmp_path, "help", f"PYTHON3={sys.executable} -I -S")
+    done = make("help", f"PYTHON3={sys.executable} -I -S", cwd=tmp_path)
     assert done.stdout == overview(from_make=True) + "\n", done.stderr
     assert {path.name for path in tmp_path.iterdir()} == {"Makefile", "cli"}
 
 
-def completions(script: Path, *words: str) -> set[str]:
-    """Return bash's completions of the last of these words."""
-    ask = f"""
-        source {shlex.quote(str(script))}
-        COMP_WORDS=({" ".join(map(shlex.quote, words))}); COMP_CWORD={len(words) - 1}
-        _shtab_raycaster; printf '%s\\n' "${{COMPREPLY[@]}}"
-    """
-    done = subprocess.run(["bash", "-c", ask], capture_output=True, text=True, check=True)
-    return set(done.stdout.split())
+COMPLETE = """
+source {script}
+COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))
+_shtab_raycaster; printf '%s\\n' "${{COMPREPLY[@]}}"
+"""
 
 
 def test_bash_completion(tmp_path: Path, capsys):
     completion.main(["bash"])
     script = tmp_path / "raycaster.bash"
     script.write_text(capsys.readouterr().out)
-    subprocess.run(["bash", "-n", script], check=True)
-    assert completions(script, "raycaster", "ver") == {"verify", "verilog"}
-    assert completions(script, "raycaster", "verify", "so") == {"soak"}
-    assert completions(script, "raycaster", "sim", "mirr") == {"mirror_room"}
-    assert completions(script, "raycaster", "sim", "--frac") == {"--fraction-bits"}
-    assert completions(script, "raycaster", "sim", "--engine", "b") == {"beam"}
+    for words, expected in {
+        "ver": {"verify", "verilog"},
+        "verify so": {"soak"},
+        "sim mirr": {"mirror_room"},
+        "sim --frac": {"--fraction-bits"},
+        "sim --engine b": {"beam"},
+    }.items():
+        asked = COMPLETE.format(script=script, words=f"raycaster {words}")
+        done = subprocess.run(["bash", "-c", asked], capture_output=True, text=True, check=True)
+        assert (set(done.stdout.split()), done.stderr) == (expected, ""), words
 
 
 @pytest.mark.parametrize("shell", ["zsh", "tcsh"])
@@ -114,15 +107,8 @@ def test_other_completions(shell: str, capsys):
 
 WITHOUT_EXTRAS = """
 import sys
+sys.modules.update(dict.fromkeys({missing}))
 from contextlib import suppress
-from importlib.abc import MetaPathFinder
-
-class Refuse(MetaPathFinder):
-    def find_spec(self, name, path, target=None):
-        if name.partition(".")[0] in {missing}:
-            raise ModuleNotFoundError(name, name=name)
-
-sys.meta_path.insert(0, Refuse())
 from raycaster.cli import __main__ as program, completion
 from raycaster.cli.commands import COMMANDS
 for name in COMMANDS:
@@ -130,6 +116,7 @@ for name in COMMANDS:
         program.main([*name.split(), "--help"])
 completion.main(["bash"])
 """
+"""Imports of modules that are None fail, as if they were not installed."""
 
 
 def test_help_and_completions_without_an_extra():
@@ -138,18 +125,13 @@ def test_help_and_completions_without_an_extra():
         "adjustText", "cocotb_coverage", "distributed", "elftools", "litex", "matplotlib", "playwright", "pygame",
         "pygraphviz", "skimage", "sphinx", "wavedrom", "ziglang",
     }  # fmt: skip
-    script = WITHOUT_EXTRAS.replace("{missing}", str(missing))
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    command = [sys.executable, "-c", WITHOUT_EXTRAS.format(missing=missing)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     for name, command in COMMANDS.items():
         example = importlib.import_module(command.module).command_parser().example
         assert f"{example}\n\n" in done.stdout, name
     assert re.search("raycaster_report_option_strings=.*--quick", done.stdout)
-
-
-def test_version(capsys):
-    assert program.main(["--version"]) == 0
-    assert capsys.readouterr().out == f"raycaster {importlib.metadata.version('raycaster')}\n"
 
 
 @pytest.mark.parametrize("words", [["--version"], ["sim", "--enigne"]])
@@ -177,6 +159,18 @@ def test_the_module_and_the_program_print_the_same(words: list[str], tmp_path: P
         ("sim --engine baem", "engine: expected seed, exact or beam, got baem (did you mean beam?)"),
         ("sim --rectangles 99", "rectangles: expected 32 or less, got 99"),
         ("quartus", "board: expected de10_lite, de1_soc, de2 or de2_115, got none"),
+        ("registers --rectangles x", "rectangles: expected a whole number, got x"),
+        ("registers --rectangles 33", "rectangles: expected 32 or less, got 33"),
+        ("game --frames 0", "frames: expected at least 1, got 0"),
+        ("web --keep web.json", "keep: there is nothing to keep without --measure"),
+        ("verilog --bus pci", "bus: expected avalon, axi4lite, wishbone or apb, got pci"),
+        ("verilog PREFIX=9x", "prefix: expected the beginning of a Verilog name, such as ray_caster_, got 9x"),
+        (
+            "tinytapeout boxes --rows 240",
+            "rows: a Tiny Tapeout project shows one pixel per clock; choose ROWS=120, 96 or 60, or ENGINE=beam",
+        ),
+        ("tinytapeout boxes --colour-bits 3", "colour_bits: the Pmod has 2 pins per colour, not 3"),
+        ("tinytapeout boxes --bus apb", "bus: the top drives the registers itself, by Avalon-MM; leave out apb"),
         (
             "sim pool --engine seed",
             f"{packaged_scenes()['pool']}: camera.yaw: the seed engine measures depth along x, so its camera cannot "
@@ -184,10 +178,13 @@ def test_the_module_and_the_program_print_the_same(words: list[str], tmp_path: P
         ),
     ],
 )  # fmt: skip
-def test_a_mistake_gets_one_line_with_a_suggestion(words: str, complaint: str):
+def test_a_mistake_gets_one_line(words: str, complaint: str, tmp_path: Path, monkeypatch):
+    """The line suggests what was meant, and nothing is written."""
+    monkeypatch.chdir(tmp_path)
     with pytest.raises(UserError) as error:
         program.main(words.split())
     assert str(error.value) == complaint
+    assert not any(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(
@@ -195,7 +192,7 @@ def test_a_mistake_gets_one_line_with_a_suggestion(words: str, complaint: str):
     [("smi", "sim"), ("sok", "soak"), ("verify-al", "verify-all"), ("lnit", "lint"), ("tst", "test")],
 )
 def test_make_suggests_a_target(asked: str, meant: str):
-    done = made(ROOT, asked, f"PYTHON3={sys.executable}")
+    done = make(asked, f"PYTHON3={sys.executable}")
     assert done.stderr.startswith(f"error: unknown command: {asked} (did you mean {meant}?); make help lists all\n")
 
 
@@ -212,17 +209,17 @@ GOOD = re.findall(r"```python\n(.*?)```", (ROOT / "docs/extend.md").read_text(),
         ("dimmed.word.next = colour", "dimmed.word.next = brighter(colour", "35: "),
     ],
 )
-def test_a_fault_in_a_block_is_one_line(right: str, wrong: str, fault: str, tmp_path: Path, capsys):
+def test_a_fault_in_a_block_is_one_line(right: str, wrong: str, fault: str, tmp_path: Path, monkeypatch, capsys):
     """The error names file, line and fault; the block is the example on the page about writing one."""
     assert right in GOOD
     path = tmp_path / "colour_dimmer.py"
     path.write_text(GOOD.replace(right, wrong))
 
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "colour_dimmer", raising=False)
+
     def convert() -> None:
-        spec = importlib.util.spec_from_file_location("colour_dimmer", path)
-        assert spec is not None and spec.loader is not None
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
+        module = importlib.import_module("colour_dimmer")
         with elaboration():
             block = module.colour_dimmer(clk=bit(), dim=bit(), colour=Colour(), dimmed=Colour())
         convert_hierarchy(block, tmp_path, "// {module}")
@@ -256,14 +253,17 @@ def test_a_missing_extra_is_named(monkeypatch):
         program.main(["docs"])
 
 
-def test_suggested_commands_have_the_users_form(monkeypatch):
-    monkeypatch.delenv(FROM_MAKE, raising=False)
+@pytest.mark.parametrize(
+    ("from_make", "expected"),
+    [
+        ("", "raycaster verify soak 'my scene.toml' --pixel 3,4 --fraction-bits 4 --stiff --simulator icarus"),
+        ("1", "make soak SCENE='my scene.toml' PIXEL=3,4 FRACTION_BITS=4 STIFF=1 SIM=icarus"),
+    ],
+)
+def test_suggested_commands_have_the_users_form(from_make: str, expected: str, monkeypatch):
+    monkeypatch.setenv(FROM_MAKE, from_make)
     asked = {"pixel": "3,4", "fraction_bits": "4", "stiff": True, "sim": "icarus"}
-    shown = command_line("verify soak", "my scene.toml", asked)
-    assert shown == ("raycaster verify soak 'my scene.toml' --pixel 3,4 --fraction-bits 4 --stiff --simulator icarus")
-    monkeypatch.setenv(FROM_MAKE, "1")
-    shown = command_line("verify soak", "my scene.toml", asked)
-    assert shown == "make soak SCENE='my scene.toml' PIXEL=3,4 FRACTION_BITS=4 STIFF=1 SIM=icarus"
+    assert command_line("verify soak", "my scene.toml", asked) == expected
 
 
 @pytest.mark.parametrize(("from_make", "form"), [("", "raycaster sim"), ("1", "make sim")])
@@ -273,21 +273,8 @@ def test_complaints_are_in_the_users_form(from_make: str, form: str, tmp_path: P
     done = called("sim", "SEEDS=3", cwd=tmp_path)
     help_of = f"{'.venv/bin/' * bool(from_make)}raycaster sim --help"
     assert (done.returncode, done.stderr) == (2, f"error: SEEDS: {form} does not take it; see {help_of}\n")
-    recipes = made(ROOT, "-n", "sim")
+    recipes = make("-n", "sim")
     assert f"{FROM_MAKE}=1 " in recipes.stdout
-
-
-def make_with(directory: Path, script: str, *words: str) -> subprocess.CompletedProcess[str]:
-    """Run make in a directory where everything is installed, with a script as Python."""
-    for name in ("Makefile", "pyproject.toml", "constraints.txt"):
-        shutil.copy(ROOT / name, directory)
-    (directory / ".venv").mkdir(exist_ok=True)
-    for name in ("base", *re.findall(r": EXTRAS := ([\w,]+)$", (ROOT / "Makefile").read_text(), re.MULTILINE)):
-        (directory / ".venv" / name).touch()
-    python = directory / "python"
-    python.write_text(script)
-    python.chmod(0o755)
-    return made(directory, "-s", *words, "PYTHON=./python")
 
 
 @pytest.mark.parametrize(
@@ -296,9 +283,11 @@ def make_with(directory: Path, script: str, *words: str) -> subprocess.Completed
 )
 def test_make_passes_values_on_unchanged(tmp_path: Path, value: str):
     """Neither make nor the shell expands or runs the value, in a recipe or in that of a recursive make."""
-    script = f"#!{sys.executable}\nimport json, sys\nprint(json.dumps(sys.argv[4:]))\n"
+    script = f"exec {sys.executable} -c 'import json, sys; print(json.dumps(sys.argv[4:]))' \"$@\""
+    installed(tmp_path)
+    write_script(tmp_path, "python", script)
     for target, more in (("sim", []), ("flash", ["FLASH=1"])):
-        done = make_with(tmp_path, script, target, f"SCENE={value}")
+        done = make("-s", target, f"SCENE={value}", "PYTHON=./python", cwd=tmp_path)
         assert done.returncode == 0, done.stderr
         assert json.loads(done.stdout) == [f"SCENE={value}", *more]
     assert not (tmp_path / "bad").exists()
@@ -306,5 +295,7 @@ def test_make_passes_values_on_unchanged(tmp_path: Path, value: str):
 
 def test_a_failing_line_of_a_recipe_ends_it(tmp_path: Path):
     """All lines of a recipe share a shell, which must stop at the first failure."""
-    done = make_with(tmp_path, '#!/bin/sh\necho "$*"\nfalse\n', "lint")
+    installed(tmp_path)
+    write_script(tmp_path, "python", 'echo "$*"\nfalse')
+    done = make("-s", "lint", "PYTHON=./python", cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "-m ruff check\n")

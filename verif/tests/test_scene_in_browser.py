@@ -12,19 +12,18 @@ import random
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from pathlib import Path
 
 import pytest
 import test_scene
 from conftest import ROOT
-from playwright.sync_api import Page
 
 from raycaster.configuration import LOOKS
 from raycaster.scene import Camera, Scene, SceneError, load_scene, packaged_scenes
 from raycaster.verif.seeds import repeat, seed
-from raycaster.web.browser import browser_page
 from raycaster.web.scene_schema import scene_schema
 
-PAGE = ROOT / "web" / "page"
+NAME = "scene.toml"
 
 FULL = """\
 title = "All keys"
@@ -126,42 +125,39 @@ def _as_read(scene: Scene) -> dict[str, object]:
 
 
 @pytest.fixture(scope="module")
-def page():
-    with browser_page() as page:
-        for script in ("vendor/smol-toml.js", "scene.js"):
-            page.add_script_tag(path=PAGE / script)
-        yield page
+def page(browser):
+    for script in ("vendor/smol-toml.js", "scene.js"):
+        browser.add_script_tag(path=ROOT / "web" / "page" / script)
+    return browser
+
+
+def in_browser(page, texts: Iterable[str], limit: float = math.inf, schema: dict | None = None) -> list[dict]:
+    """Read texts in the browser."""
+    script = "([texts, ...rest]) => texts.map((text) => RayCasterScene.read(text, ...rest))"
+    return page.evaluate(script, [list(texts), NAME, schema or scene_schema(), limit])
 
 
 @pytest.fixture
-def in_browser(page, tmp_path):
-    """Return a function that reads texts in the browser, under the file name that `in_shell` uses."""
+def both(page, tmp_path, monkeypatch):
+    """Return a function that reads texts in the browser and in the shell, and yields each text with both results."""
+    monkeypatch.chdir(tmp_path)
 
-    def read(texts: Iterable[str], rectangles: int | None = None, schema: dict | None = None) -> list[dict]:
-        script = "([texts, ...rest]) => texts.map((text) => RayCasterScene.read(text, ...rest))"
-        path, limit = str(tmp_path / "scene.toml"), math.inf if rectangles is None else rectangles
-        return page.evaluate(script, [list(texts), path, schema or scene_schema(), limit])
-
-    return read
-
-
-@pytest.fixture
-def in_shell(tmp_path):
-    """Return a function that reads a text in Python."""
-
-    def read(text: str, rectangles: int | None = None) -> dict:
-        path = tmp_path / "scene.toml"
-        path.write_bytes(text.encode())
+    def in_shell(text: str, rectangles: int | None) -> dict:
+        Path(NAME).write_bytes(text.encode())
         try:
-            return {"scene": _as_read(load_scene(path, rectangles)), "error": None}
+            return {"scene": _as_read(load_scene(Path(NAME), rectangles)), "error": None}
         except SceneError as error:
             return {"scene": None, "error": str(error)}
+
+    def read(texts: list[str], rectangles: int | None = None) -> Iterator[tuple[str, dict, dict]]:
+        for text, result in zip(texts, in_browser(page, texts, rectangles or math.inf), strict=True):
+            yield text, result, in_shell(text, rectangles)
 
     return read
 
 
 def _is_syntax(result: dict) -> bool:
-    return result["error"] is not None and "scene.toml: is not TOML" in result["error"]
+    return result["error"] is not None and f"{NAME}: is not TOML" in result["error"]
 
 
 def _agree(result: dict, expected: dict) -> bool:
@@ -175,38 +171,22 @@ def _number_of_line(result: dict) -> int:
     return int(re.search(r"is not TOML at line (\d+)", result["error"])[1])
 
 
-def test_packaged_scenes(in_browser):
-    scenes = packaged_scenes()
-    results = in_browser(path.read_text(encoding="utf-8") for path in scenes.values())
-    for path, result in zip(scenes.values(), results, strict=True):
-        assert result == {"scene": _as_read(load_scene(path)), "error": None}, path
-    needs = [result["scene"]["needs"] for result in results]
-    assert all({one[look] for one in needs} == {True, False} for look in LOOKS)
+def _mistakes() -> list[str]:
+    """Return the texts for which the shell's tests expect errors."""
+    return [test_scene.changed(old, new) for old, new, _ in test_scene.MISTAKES]
 
 
-def _mistakes() -> list[tuple[str, str]]:
-    """Return the texts and expected errors of the shell's scene tests."""
-    [mark] = [mark for mark in test_scene.test_mistake.pytestmark if mark.name == "parametrize"]
-    return [(test_scene.changed(old, new), expected) for old, new, expected in mark.args[1]]
-
-
-def test_mistakes_of_the_shell(in_browser, tmp_path):
-    """The browser reports the lines that the shell's tests expect."""
-    texts, expected = zip(*_mistakes(), strict=True)
-    assert len(texts) > 50
-    for text, line, result in zip(texts, expected, in_browser(texts), strict=True):
-        assert _agree(result, {"scene": None, "error": f"{tmp_path}/scene.toml: {line}"}), text
-
-
-def test_every_value_at_every_key(in_browser, in_shell):
-    texts = [*_variants(), *_parts()]
-    kinds = Counter()
-    for text, result in zip(texts, in_browser(texts), strict=True):
-        expected = in_shell(text)
+def test_packaged_scenes_and_every_value_at_every_key(both):
+    texts = [path.read_text(encoding="utf-8") for path in packaged_scenes().values()] + _mistakes()
+    kinds, needs = Counter(), set()
+    for text, result, expected in both([*texts, *_variants(), *_parts()]):
         assert _agree(result, expected), f"{text}\n{result}\n{expected}"
         kinds[result["error"] is None] += 1
+        if result["scene"]:
+            needs |= {(look, result["scene"]["needs"][look]) for look in LOOKS}
     assert kinds[True] > 50
     assert kinds[False] > 1000
+    assert len(needs) == 2 * len(LOOKS)
 
 
 def _words(part: object, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
@@ -217,11 +197,14 @@ def _words(part: object, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str
         yield from _words(value, (*path, key))
 
 
-def test_every_text_of_the_schema_is_used(in_browser):
+MANY = FULL + FULL[FULL.rindex("[[rect]]") :] * 40
+"""More rectangles than any design holds."""
+
+
+def test_every_text_of_the_schema_is_used(page):
     """Changing any text in the schema changes the error for one of the mistakes."""
-    many = FULL + FULL[FULL.rindex("[[rect]]") :] * 40
-    texts = [text for text, _ in _mistakes()] + list(_parts()) + ["rect = 999", many]
-    usual = in_browser(texts, rectangles=1)
+    texts = [*_mistakes(), *_parts(), "rect = 999", MANY]
+    usual = in_browser(page, texts, 1)
     words = list(_words(scene_schema()))
     assert len(words) > 30
     for path in words:
@@ -229,14 +212,14 @@ def test_every_text_of_the_schema_is_used(in_browser):
         part = functools.reduce(operator.getitem, path[:-1], schema)
         part[path[-1]] += " indeed"
         if path[-1] != "encoding":
-            assert in_browser(texts, rectangles=1, schema=schema) != usual, path
+            assert in_browser(page, texts, 1, schema) != usual, path
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "rect = []\n" + FULL[: FULL.index("[[rect]]")],
-        "rect = [3, {}, 'a']\n" + FULL[: FULL.index("[[rect]]")],
+def test_other_texts(both):
+    without = FULL[: FULL.index("[[rect]]")]
+    texts = [
+        "rect = []\n" + without,
+        "rect = [3, {}, 'a']\n" + without,
         FULL.replace("\n", "\r\n"),
         FULL.replace("\n", "\r"),
         "\ufeff" + FULL,
@@ -246,19 +229,12 @@ def test_every_text_of_the_schema_is_used(in_browser):
         "rows = 0x" + "f" * 4000,
         FULL.replace('"floor"', "'fl\u00f6\u2028\U0001f600\"'").replace("colour =", "color ="),
         FULL + FULL[FULL.rindex("[[rect]]") :] * 11,
-        FULL + FULL[FULL.rindex("[[rect]]") :] * 40,
-    ],
-    ids=itertools.count(),
-)
-def test_other_texts(in_browser, in_shell, text):
-    [result] = in_browser([text], rectangles=12)
-    assert result == in_shell(text, rectangles=12)
-
-
-@pytest.mark.parametrize("text", ["rows = " + "9" * 5000, "rows = " + "[" * 5000])
-def test_monstrous_toml_is_refused_too(in_browser, in_shell, text):
-    assert in_browser([text])[0]["error"]
-    assert in_shell(text)["error"]
+        MANY,
+    ]
+    for text, result, expected in both(texts, 12):
+        assert result == expected, text
+    for _, result, expected in both(["rows = " + "9" * 5000, "rows = " + "[" * 5000]):
+        assert result["error"] and expected["error"]
 
 
 def test_bytes(page):
@@ -269,12 +245,10 @@ def test_bytes(page):
     assert result == {"scene": None, "error": "dropped.toml: is not UTF-8 text; a scene is a TOML file"}
 
 
-def test_broken_texts(in_browser, in_shell):
+def test_broken_texts(both):
     """Browser and shell accept the same texts and report errors at the same line, except those named in scene.js."""
-    texts = list(itertools.islice(_broken(random.Random(seed())), 1000))
     kinds = Counter()
-    for text, result in zip(texts, in_browser(texts), strict=True):
-        expected = in_shell(text)
+    for text, result, expected in both(list(itertools.islice(_broken(random.Random(seed())), 1000))):
         note = f"{text}\n{result['error']}\n{expected['error']}\n{repeat()}"
         assert _is_syntax(result) == _is_syntax(expected), note
         if _agree(result, expected):
@@ -289,7 +263,7 @@ def test_broken_texts(in_browser, in_shell):
     assert kinds["other line"] < 20, f"{kinds} {repeat()}"
 
 
-def _bases(page: Page, angles: list[list[float]]) -> list[list[list[int]]]:
+def _bases(page, angles: list[list[float]]) -> list[list[list[int]]]:
     return page.evaluate("(all) => all.map((angles) => RayCasterScene.basis(...angles))", angles)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Compilation for the web page: exports and imports, reuse of compiled files, and errors."""
+"""Tools of the web page: compilation to WebAssembly, and the browser in which pages are tested."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from wasmtime import Instance, Module, Store
 from raycaster.errors import UserError
 from raycaster.sim.simulator import MODELS_VARIABLE
 from raycaster.web import wasm
+from raycaster.web.browser import browser_page
 from raycaster.web.wasm import FREESTANDING, WASI, compile_wasm
 
 
@@ -63,3 +64,14 @@ def test_without_a_compiler(program, monkeypatch):
     monkeypatch.setattr(wasm, "find_spec", lambda name: None)
     with pytest.raises(UserError, match=r"^ziglang is missing; it comes with the extra play: .*$"):
         program("30")
+
+
+def test_a_script_that_fails_is_noticed():
+    with pytest.raises(AssertionError, match="nowhere is not defined"), browser_page() as page:
+        page.set_content("<script>nowhere()</script>")
+
+
+def test_without_a_browser(monkeypatch):
+    monkeypatch.setattr("raycaster.web.browser.find", lambda tool: None)
+    with pytest.raises(UserError, match=r"^Chromium is missing[;,] .*$"), browser_page():
+        pass

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-import json
 import math
+from contextlib import contextmanager
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -12,35 +12,24 @@ from threading import Thread
 
 import numpy as np
 import pytest
+from conftest import BUILD, PAGE_MODELS, page_state
 from rich.console import Console
 
+from raycaster.configuration import configure
 from raycaster.engines import SEED
-from raycaster.errors import UserError
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import Rectangles
 from raycaster.play.machine import Machine, build_machine
 from raycaster.scene import Camera, Scene, SceneError, load_scene, packaged_scenes
 from raycaster.screens import SCREENS, Screen
-from raycaster.sim.simulator import BUILD
 from raycaster.sw.firmware import build_firmware
 from raycaster.sw.play_script import DEMO, load
 from raycaster.web import speed
-from raycaster.web.browser import browser_page
-from raycaster.web.site import MODELS, Model, write_site
-from raycaster.web.site import main as site_main
+from raycaster.web.site import MODELS, write_site
 
-SHOWN = "RayCaster.state.walk?.frames > 2 && RayCaster.state.walk.wrong !== null"
-TIMEOUT_MS = 60_000
-LOOKS = {"materials": True, "patterns": True, "reflections": 2}
-SMALL_MODELS = (
-    Model("walk", {"engine": "beam", "screen": "tiny", "turn": True}),
-    Model("exact", {"engine": "exact", "screen": "tiny", "turn": True, **LOOKS, "light": True}, taps=True),
-    Model("seed-0", {"engine": "seed", "screen": "tiny", **LOOKS}, taps=True),
-)
-"""Small models with the names of the page's own; other tests of the page have the last two as well."""
-
-WALK, TINY, _ = (model.configuration.screen_geometry for model in SMALL_MODELS)
+WALK, TINY = (configure(**PAGE_MODELS[name]).screen_geometry for name in ("walk", "exact"))
+VGA = SCREENS["vga", 240]
 PIXELS = f"{WALK.columns * WALK.rows:,}"
 MOST_BYTES = 2_000_000
 """Largest size of the whole page, compressed."""
@@ -52,6 +41,12 @@ TOUR = """async ([model, source, cameras]) => {
     for (const camera of cameras) frames.push(await machine.frame({ camera }));
     machine.end();
     return frames.map((frame) => pictureHash(frame.pixels));
+}"""
+
+GAME = """async (held) => {
+    const machine = await Machine.start("game"), hashes = [];
+    for (const buttons of held) hashes.push(pictureHash((await machine.frame({ buttons })).pixels));
+    return hashes;
 }"""
 
 
@@ -72,34 +67,19 @@ def packaged(name: str) -> Scene:
     return load_scene(packaged_scenes()[name])
 
 
-def cameras_around(camera: Camera, count: int) -> list[Camera]:
-    """Return cameras on a walk from a scene's camera, which makes a full turn."""
-    x, y, z = camera.position
-    return [
-        Camera(
-            position=(min(511, x + 2 * step), max(0, y - step), z),
-            yaw=math.remainder(camera.yaw + 360 / count * step, 360), pitch=camera.pitch + step % 7, roll=camera.roll,
-        )
-        for step in range(1, count)
-    ]  # fmt: skip
-
-
-def assert_tour(page, model: str, name: str, count: int, screen: Screen = WALK) -> None:
-    """Assert that a model draws golden frames in the browser, from a scene's camera and on a walk from there."""
+def assert_tour(page, model: str, name: str, count: int, screen: Screen) -> None:
+    """Assert that a model draws golden frames, from a scene's camera and on a walk from there with a full turn."""
     scene = packaged(name)
-    cameras = [scene.camera, *cameras_around(scene.camera, count)]
+    x, y, z = scene.camera.position
+    cameras = [scene.camera]
+    for step in range(1, count):
+        place, yaw = (min(511, x + 2 * step), max(0, y - step), z), scene.camera.yaw + 360 / count * step
+        pitch = scene.camera.pitch + step % 7
+        cameras.append(Camera(position=place, yaw=math.remainder(yaw, 360), pitch=pitch, roll=scene.camera.roll))
     expected = [golden_hash(scene, camera, screen) for camera in cameras]
     assert len(set(expected)) > count // 2
     views = [{"position": camera.position, "basis": camera.basis} for camera in cameras[1:]]
     assert page.evaluate(TOUR, [model, packaged_scenes()[name].read_text(), views]) == expected, name
-
-
-@pytest.fixture(scope="module")
-def site(tmp_path_factory) -> Path:
-    """Write a page with three models, whose designs have the tiny screen."""
-    output = tmp_path_factory.mktemp("site") / "web"
-    write_site(output, BUILD, Console(quiet=True), models=SMALL_MODELS, test=True)
-    return output
 
 
 @pytest.fixture(scope="module")
@@ -109,109 +89,88 @@ def whole_site(tmp_path_factory) -> tuple[Path, int]:
     return output, write_site(output, BUILD, Console(quiet=True), test=True)
 
 
-@pytest.fixture(scope="module")
-def browser():
-    """Share one browser page among all tests, and keep what it writes on the console."""
-    with browser_page() as page:
-        page.set_default_timeout(TIMEOUT_MS)
-        page.said = []
-        page.on("console", lambda message: page.said.append(message.text))
-        yield page
-
-
-@pytest.fixture
-def page(browser):
-    """Return the browser's page, which must write nothing on the console."""
-    browser.said.clear()
-    browser.goto("about:blank")
-    yield browser
-    assert browser.said == []
-
-
-def opened(page, site: Path, place: str = "") -> dict:
-    """Open the page and return the walk's state once it shows frames."""
-    page.goto(f"{(site / 'index.html').as_uri()}{place}")
-    page.wait_for_function(SHOWN)
+def opened(page, address: str) -> dict:
+    """Open the page and return the walk's state once it shows checked frames."""
+    page.goto(address)
+    page.wait_for_function("RayCaster.state.walk?.frames > 2 && RayCaster.state.walk.wrong !== null")
     return page.evaluate("RayCaster.state.walk")
 
 
-def test_draws_from_a_disk(page, site):
-    state = opened(page, site)
-    assert state["hash"] == golden_hash(packaged("mirror_room"))
-    assert state["wrong"] == 0
-    assert f"0 wrong pixels of {PIXELS}" in page.text_content("#walk-status")
+@pytest.fixture
+def walk(page, site):
+    """Return the page, which shows the walk."""
+    opened(page, (site / "index.html").as_uri())
+    return page
 
 
-def test_draws_from_a_server(page, site):
+@contextmanager
+def served(site: Path):
+    """Serve a folder; yield its address."""
     handler = partial(SimpleHTTPRequestHandler, directory=site)
     handler.log_message = lambda *_: None
     server = ThreadingHTTPServer(("127.0.0.1", 0), handler)
     Thread(target=server.serve_forever, daemon=True).start()
-    try:
-        page.goto(f"http://127.0.0.1:{server.server_port}/index.html")
-        page.wait_for_function(SHOWN)
-    finally:
-        server.shutdown()
+    yield f"http://127.0.0.1:{server.server_port}"
+    server.shutdown()
 
 
-def test_keys_move_the_camera(page, site):
-    opened(page, site)
-    start = page.evaluate("RayCaster.state.walk.camera")
+def test_draws_from_a_disk_and_from_a_server(page, site):
+    with served(site) as address:
+        for place in (site.as_uri(), address):
+            state = opened(page, f"{place}/index.html")
+            assert (state["hash"], state["wrong"]) == (golden_hash(packaged("mirror_room")), 0)
+            assert f"0 wrong pixels of {PIXELS}" in page.text_content("#walk-status")
+    assert page.evaluate("Object.keys(RayCaster.scenes)") == list(packaged_scenes())
+
+
+def test_keys_move_the_camera(walk):
+    start = walk.evaluate("RayCaster.state.walk.camera")
     for key in ("w", "ArrowRight"):
-        page.keyboard.down(key)
-    moved = "({ position: [x], basis: [[fx]] }) => RayCaster.state.walk.camera.position[0] > x + 20"
-    page.wait_for_function(f"(start) => ({moved})(start)", arg=start)
+        walk.keyboard.down(key)
+    moved = "RayCaster.state.walk.camera.position[0] > start.position[0] + 20"
+    walk.wait_for_function(f"(start) => {moved}", arg=start)
     for key in ("w", "ArrowRight"):
-        page.keyboard.up(key)
-    page.wait_for_function("RayCaster.state.walk.wrong === 0")
-    state = page.evaluate("RayCaster.state.walk")
+        walk.keyboard.up(key)
+    walk.wait_for_function("RayCaster.state.walk.wrong === 0")
+    state = walk.evaluate("RayCaster.state.walk")
     assert state["camera"]["basis"] != start["basis"]
-    scene = packaged("mirror_room")
-    golden = ExactModel().picture(
-        WALK, Rectangles.of_scene(scene), state["camera"]["position"], scene.background, scene.reflections,
-        basis=tuple(map(tuple, state["camera"]["basis"])),
-    )  # fmt: skip
+    scene, basis = packaged("mirror_room"), tuple(map(tuple, state["camera"]["basis"]))
+    place = state["camera"]["position"], scene.background, scene.reflections
+    golden = ExactModel().picture(WALK, Rectangles.of_scene(scene), *place, basis=basis)
     assert state["hash"] == picture_hash(golden)
 
 
-def test_a_bad_scene_shows_its_line(page, site, tmp_path):
-    opened(page, site)
-    page.click("summary")
-    good = page.input_value("#walk-text")
-    bad = good.replace("colour = ", "color = ", 1)
-    page.fill("#walk-text", bad)
-    page.click("#walk-use")
+def test_a_bad_scene_shows_its_line(walk, tmp_path):
+    walk.click("summary")
+    good = walk.input_value("#walk-text")
     path = tmp_path / "scene"
-    path.write_text(bad)
+    path.write_text(good.replace("colour = ", "color = ", 1))
     with pytest.raises(SceneError) as error:
         load_scene(path)
-    assert page.text_content("#walk-error") == str(error.value).replace(str(path), "scene")
-    page.fill("#walk-text", good)
-    page.click("#walk-use")
-    assert page.text_content("#walk-error") == ""
+    for text, complaint in ((path.read_text(), str(error.value).replace(str(path), "scene")), (good, "")):
+        walk.fill("#walk-text", text)
+        walk.click("#walk-use")
+        assert walk.text_content("#walk-error") == complaint
 
 
 def test_a_planted_pixel_is_counted_and_marked(page, site):
-    state = opened(page, site, "?plant=40,30")
-    assert state["wrong"] == 1
+    assert opened(page, f"{(site / 'index.html').as_uri()}?plant=40,30")["wrong"] == 1
     assert f"1 wrong pixel of {PIXELS}" in page.text_content("#walk-status .wrong")
-    page.wait_for_function(
-        "[...find('walk-picture').getContext('2d').getImageData(40, 30, 1, 1).data].join() === '255,0,255,255'"
-    )
+    pixel = "find('walk-picture').getContext('2d').getImageData(40, 30, 1, 1).data"
+    page.wait_for_function(f"[...{pixel}].join() === '255,0,255,255'")
 
 
 @pytest.mark.parametrize(("model", "name", "screen"), [("walk", "boxes", WALK), ("exact", "shadow_hall", TINY)])
-def test_turning_cameras_and_a_light(page, site, model, name, screen):
-    opened(page, site)
-    assert_tour(page, model, name, 5, screen)
+def test_turning_cameras_and_a_light(walk, model, name, screen):
+    assert_tour(walk, model, name, 5, screen)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["checkered_hall", "kaleidoscope", "periscope", "pool", "rooftops"])
 def test_a_hundred_frames(page, whole_site, name):
     """Five scenes together need every look that the design can have."""
-    opened(page, whole_site[0])
-    assert_tour(page, "walk-looks", name, 20, SCREENS["vga", 240])
+    opened(page, (whole_site[0] / "index.html").as_uri())
+    assert_tour(page, "walk-looks", name, 20, VGA)
 
 
 @pytest.mark.slow
@@ -223,28 +182,16 @@ def test_the_size(whole_site):
 
 @pytest.mark.slow
 def test_the_game_is_the_native_one(page, whole_site):
-    site, _ = whole_site
     held = load(DEMO)[:40]
     program = build_firmware((BUILD / "firmware").absolute()).words
     config = next(model.configuration for model in MODELS if model.processor)
     with Machine(build_machine(config, processor=True), config, program) as machine:
         # The machine has already completed its first frame.
         expected = [picture_hash(machine.frame(buttons).picture) for buttons in held]
-    page.goto((site / "index.html").as_uri() + "#game")
+    page.goto((whole_site[0] / "index.html").as_uri() + "#game")
     page.wait_for_function("RayCaster.state.game?.frames > 2 && RayCaster.state.game.wrong === 0")
     assert "engine beam" in page.text_content("#game-text")
-    found = page.evaluate(
-        """async (held) => {
-            const machine = await Machine.start("game"), hashes = [];
-            for (const buttons of held) {
-                const frame = await machine.frame({ buttons });
-                hashes.push(pictureHash(frame.pixels));
-            }
-            return hashes;
-        }""",
-        held,
-    )
-    assert found == expected
+    assert page.evaluate(GAME, held) == expected
     assert len(set(expected)) > 10
 
 
@@ -253,19 +200,17 @@ def engines(page, scene: str, fraction_bits: int) -> dict:
     for select, value in (("scene", scene), ("fraction", str(fraction_bits))):
         page.evaluate("delete RayCaster.state.engines")
         page.select_option(f"#engines-{select}", value)
-        page.wait_for_function("RayCaster.state.engines?.done")
-    return page.evaluate("RayCaster.state.engines")
+        state = page_state(page, "engines")
+    return state
 
 
 @pytest.mark.slow_sets("whole")
-@pytest.mark.parametrize(
-    ("which", "screen", "fraction_bits"), [("site", TINY, 0), ("whole_site", SCREENS["vga", 240], 4)]
-)
+@pytest.mark.parametrize(("which", "screen", "fraction_bits"), [("site", TINY, 0), ("whole_site", VGA, 4)])
 def test_the_engines_side_by_side(page, request, which, screen, fraction_bits):
     """The exact engine draws the shadows, and afterwards a scene without a light; the seed engine refuses the first."""
     site = request.getfixturevalue(which)
     page.goto((site if which == "site" else site[0]).joinpath("index.html").as_uri() + "#engines")
-    page.wait_for_function("RayCaster.state.engines?.done")
+    page_state(page, "engines")
     reason = SEED.lacks["light"].replace("the seed engine", "it")
     state = engines(page, "evening", fraction_bits)
     # The exact engine of the whole page has the screen of the walk.
@@ -281,13 +226,12 @@ def test_the_engines_side_by_side(page, request, which, screen, fraction_bits):
     assert not page.locator("#engines-seed").is_hidden()
 
 
-def test_a_walk_with_a_light(page, site):
+def test_a_walk_with_a_light(walk):
     """The walk takes the exact engine for a scene with a light, and the beam engine again for the next scene."""
-    opened(page, site)
     for name, screen in (("evening", TINY), ("boxes", WALK)):
-        page.select_option("#walk-scene", name)
+        walk.select_option("#walk-scene", name)
         expected = golden_hash(packaged(name), screen=screen)
-        page.wait_for_function(f"RayCaster.state.walk.hash === '{expected}' && RayCaster.state.walk.wrong === 0")
+        walk.wait_for_function(f"RayCaster.state.walk.hash === '{expected}' && RayCaster.state.walk.wrong === 0")
 
 
 @pytest.mark.slow
@@ -295,22 +239,7 @@ def test_frames_are_timed(page, whole_site, monkeypatch):
     """Frame times in the browser and natively are positive numbers of milliseconds, and the table has them."""
     monkeypatch.setattr(speed, "SCENES", ("boxes",))
     monkeypatch.setattr(speed, "FRAMES", 2)
-    site, _ = whole_site
-    (row,) = speed.speed(page, site, MODELS[0].name, MODELS[0].configuration, BUILD, Console(quiet=True))
-    assert row.pop("scene") == "boxes"
-    assert min(row.values()) > 0
-    assert speed.speed_table([row | {"scene": "boxes"}]).row_count == 1
-
-
-def test_settings_are_json(site):
-    """The page's settings are one assignment."""
-    text = (site / "settings.js").read_text()
-    settings = json.loads(text.removeprefix("Object.assign(RayCaster, ").removesuffix(");\n"))
-    assert set(settings["scenes"]) == set(packaged_scenes())
-    assert ["light" in model["looks"] for model in settings["walk"]["models"]] == [False, False, True]
-
-
-def test_nothing_to_keep_is_refused(tmp_path):
-    with pytest.raises(UserError, match=r"^keep: there is nothing to keep without --measure$"):
-        site_main(["--keep", str(tmp_path / "web.json")])
-    assert not (tmp_path / "web.json").exists()
+    [row] = speed.speed(page, whole_site[0], MODELS[0].name, MODELS[0].configuration, BUILD, Console(quiet=True))
+    assert row["scene"] == "boxes"
+    assert min(value for name, value in row.items() if name != "scene") > 0
+    assert speed.speed_table([row]).row_count == 1
