@@ -30,7 +30,7 @@ def scale(of_it: Sequence[Property]) -> tuple[bool, str]:
     """Return whether one of a property's designs has the full widths of a default design, and the sizes of all of them.
 
     The number of rectangles is a width if the property covers their index or their memory. The number of reflections is
-    a range if the property's wrapper has it as a parameter.
+    a range if the property uses it.
     """
     alone = [proof.parameters for proof in of_it if not isinstance(proof.design, Configuration)]
     narrow = [parameters["COORDINATE_BITS"] for parameters in alone if "COORDINATE_BITS" in parameters]
@@ -39,7 +39,7 @@ def scale(of_it: Sequence[Property]) -> tuple[bool, str]:
     counts = [
         design.rectangles
         for proof, design in configured
-        if "INDEX_BITS" in proof.parameters or "rect_mem" in proof.modules
+        if "INDEX_BITS" in proof.parameters or {"rect_mem", "rect_sequencer"} & {*proof.modules}
     ]
     mirrors = [design.reflections for proof, design in configured if {"REFLECTIONS", "MIRRORS"} & {*proof.parameters}]
     mirrors += [parameters["MIRRORS"] for parameters in alone if "MIRRORS" in parameters]

@@ -34,7 +34,7 @@ from raycaster.rtl.common.records import (
     Walk,
     rect_of,
 )
-from raycaster.rtl.common.widths import LANES, WORD_BITS, index_bits
+from raycaster.rtl.common.widths import LANES, WORD_BITS
 from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import rect_rom
@@ -196,8 +196,6 @@ class TableAlone(Alone):
             for index in range(general.table)
             for name in ("corner_0", "corner_1", "surface")
         } | {
-            "ADDRESS_BITS": address_bits(general.table),
-            "INDEX_BITS": index_bits(fixed),
             "RECT_BITS": len(rect_of(fixed).word),
             "LATENCY": fixed.facts.rect_latency,
             "CORNER_BITS": CORNER.implemented,

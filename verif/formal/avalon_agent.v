@@ -25,45 +25,16 @@
 //   "rect_mem.written 1", "rect_slot.shadow_usable as usable", "scene_word.bus_commit or bus_write",
 //   "scene_word.bus_go_live or bus_commit"]
 
-module avalon_agent #(
-    parameter ADDRESS_BITS = 5, parameter [31:0] VERSION_WORD = 0, parameter [31:0] ENGINE_WORD = 0,
-    parameter [31:0] SIZE_WORD = 0, parameter REFLECTIONS = 1, parameter RECT_BITS = 71
-) (
-    input clk, input reset,
-    input [ADDRESS_BITS-1:0] address, input read, input write, input [31:0] writedata, input [3:0] byteenable,
-    input start_screen, input busy, input underrun, input [15:0] row_cycles, input [15:0] group_cycles,
-    input rects_index, input rects_fetch
-);
-wire [31:0] readdata, camera_readback, rect_readback, bus_data, bus_mask;
-wire readdatavalid, waitrequest, irq, bad_rectangle, run, bus_write, bus_commit, bus_go_live;
-wire [2:0] reflections;
-wire [23:0] background;
-wire [ADDRESS_BITS-1:0] bus_address;
-wire [8:0] camera_x, camera_y, camera_z;
-wire [1:0] rects_usable;
-wire [RECT_BITS-1:0] rects_rect;
-
-avalon_interface registers (
-    .clk(clk), .reset(reset), .avs_s0_address(address), .avs_s0_read(read), .avs_s0_write(write),
-    .avs_s0_writedata(writedata), .avs_s0_byteenable(byteenable), .avs_s0_readdata(readdata),
-    .avs_s0_readdatavalid(readdatavalid), .avs_s0_waitrequest(waitrequest), .irq(irq),
-    .camera_readback(camera_readback), .rect_readback(rect_readback), .bad_rectangle(bad_rectangle), .picture_run(run),
-    .picture_reflections(reflections), .picture_background(background), .progress_start_screen(start_screen),
-    .progress_busy(busy), .progress_underrun(underrun), .progress_row_cycles(row_cycles),
-    .progress_group_cycles(group_cycles), .bus_write(bus_write), .bus_commit(bus_commit), .bus_go_live(bus_go_live),
-    .bus_address(bus_address), .bus_data(bus_data), .bus_mask(bus_mask)
-);
-camera_mem camera (
-    .clk(clk), .reset(reset), .readback(camera_readback), .bus_write(bus_write), .bus_commit(bus_commit),
-    .bus_go_live(bus_go_live), .bus_address(bus_address), .bus_data(bus_data), .bus_mask(bus_mask),
-    .camera_word({camera_x, camera_y, camera_z})
-);
-rect_mem rects (
-    .clk(clk), .reset(reset), .readback(rect_readback), .bad_rectangle(bad_rectangle), .bus_write(bus_write),
-    .bus_commit(bus_commit), .bus_go_live(bus_go_live), .bus_address(bus_address), .bus_data(bus_data),
-    .bus_mask(bus_mask), .rects_usable(rects_usable), .rects_index(rects_index), .rects_fetch(rects_fetch),
-    .rects_rect_word(rects_rect)
-);
+module avalon_agent;
+avalon_interface registers (.*);
+wire [ADDRESS_BITS-1:0] address = avs_s0_address;
+wire [31:0] writedata = avs_s0_writedata, readdata = avs_s0_readdata;
+wire [3:0] byteenable = avs_s0_byteenable;
+wire read = avs_s0_read, write = avs_s0_write, readdatavalid = avs_s0_readdatavalid, waitrequest = avs_s0_waitrequest;
+wire start_screen = progress_start_screen, busy = progress_busy;
+wire [15:0] row_cycles = progress_row_cycles, group_cycles = progress_group_cycles;
+camera_mem camera (.*, .readback(camera_readback));
+rect_mem rects (.*, .readback(rect_readback));
 
 // The register map, written a second time by hand.
 localparam ID = 0, VERSION = 1, ENGINE = 2, SIZE = 3, CONTROL = 4, STATUS = 5, CYCLES = 6, IRQ_ENABLE = 7,
@@ -81,55 +52,40 @@ always @* case (watched)
 endcase
 
 reg known = 0;
-reg last_reset;
-always @(posedge clk) begin
-    known <= 1;
-    last_reset <= reset;
-end
+always @(posedge clk) known <= 1;
 always @* begin
     if (!known) assume (reset);
     assume (!(read && write));
 end
 
 // waitrequest is high in the first cycle after reset only.
-always @* if (known) assert (waitrequest == last_reset);
+always @* if (known) assert (waitrequest == $past(reset));
 
 // Accepted transfers, and the same one cycle later.
 wire accepted = !waitrequest && !reset;
 wire reads = read && accepted, writes = write && accepted;
 wire [31:0] mask = {{8{byteenable[3]}}, {8{byteenable[2]}}, {8{byteenable[1]}}, {8{byteenable[0]}}};
 wire commits = writes && address == CONTROL && byteenable[0] && writedata[1];
-reg wrote, committed_1, committed_2;
+reg wrote, committed_2;
 reg [ADDRESS_BITS-1:0] wrote_address;
 reg [31:0] wrote_ones, wrote_mask;
 always @(posedge clk) begin
-    wrote <= writes;
-    wrote_address <= address;
-    wrote_ones <= writedata & mask;
-    wrote_mask <= mask;
-    committed_1 <= commits;
-    committed_2 <= !reset && committed_1;
+    {wrote, wrote_address, wrote_ones, wrote_mask} <= {writes, address, writedata & mask, mask};
+    committed_2 <= !reset && $past(commits);
 end
 
 // The shadow, its snapshot with the write that committed it, and the live word. A commit takes two cycles, so
 // StartScreen shows it only if it comes later.
-reg [31:0] shadow, snapshot, pending, live;
+wire [31:0] shadow, shadow_1, snapshot, pending, live;
+copies #(32) word (
+    clk, reset, writes && address == watched, mask & implemented, writedata, $past(commits), committed_2, start_screen,
+    shadow, shadow_1, snapshot, pending, live
+);
 reg outstanding;  // committed but not shown yet
 always @(posedge clk) begin
-    if (reset) begin
-        shadow <= 0;
-        pending <= 0;
-        live <= 0;
-        outstanding <= 0;
-    end
-    else begin
-        if (writes && address == watched) shadow <= ((shadow & ~mask) | (writedata & mask)) & implemented;
-        if (committed_2) pending <= snapshot;
-        if (start_screen) live <= pending;
-        if (commits) outstanding <= 1;
-        else if (start_screen && !committed_1 && !committed_2) outstanding <= 0;
-    end
-    if (committed_1) snapshot <= shadow;
+    if (reset) outstanding <= 0;
+    else if (commits) outstanding <= 1;
+    else if (start_screen && !$past(commits) && !committed_2) outstanding <= 0;
 end
 
 // Status, interrupt and cycles: an event in the same cycle as a write that clears it is kept.
@@ -143,10 +99,9 @@ always @(posedge clk) begin
         {frame, slowest_row, slowest_group} <= 0;
     end
     else begin
-        status_underrun <= underrun || (status_underrun && !(wrote_status && wrote_ones[1]));
+        status_underrun <= progress_underrun || (status_underrun && !(wrote_status && wrote_ones[1]));
         status_bad <= (committed_2 && bad_rectangle) || (status_bad && !(wrote_status && wrote_ones[2]));
-        event_pending <= start_screen
-            || (event_pending && !(wrote && wrote_address == IRQ_PENDING && wrote_ones[0]));
+        event_pending <= start_screen || (event_pending && !(wrote && wrote_address == IRQ_PENDING && wrote_ones[0]));
         if (wrote && wrote_address == IRQ_ENABLE && wrote_mask[0]) enabled <= wrote_ones[0];
         if (start_screen) frame <= frame + 1;
         slowest_row <= wrote_cycles ? 0 : busy && row_cycles > slowest_row ? row_cycles : slowest_row;
@@ -157,8 +112,8 @@ always @* if (known) assert (irq == (enabled && event_pending));
 
 // Every accepted read, and nothing else, is answered two cycles later. The answer for the watched word has all writes
 // from before the read was accepted.
-reg read_1, read_2, watched_1, watched_2;
-reg [31:0] shadow_1, expected_1, expected_2;
+reg read_2, watched_1;
+reg [31:0] expected_1;
 always @* case (watched)
     ID: expected_1 = 32'h52415943;
     VERSION: expected_1 = VERSION_WORD;
@@ -172,52 +127,37 @@ always @* case (watched)
     default: expected_1 = shadow_1;  // 0 at an unmapped address
 endcase
 always @(posedge clk) begin
-    read_1 <= reads;
-    read_2 <= read_1 && !reset;
+    read_2 <= $past(reads) && !reset;
     watched_1 <= address == watched;
-    watched_2 <= watched_1;
-    shadow_1 <= reset ? 0 : shadow;
-    expected_2 <= expected_1;
 end
-always @* if (known && !last_reset) begin
+always @* if (known && !$past(reset)) begin
     assert (readdatavalid == read_2);
-    if (readdatavalid && watched_2) assert (readdata == expected_2);
+    if (readdatavalid && $past(watched_1)) assert (readdata == $past(expected_1));
 end
-always @* if (known && last_reset) assert (!readdatavalid);
+always @* if (known && $past(reset)) assert (!readdatavalid);
 
 // An answer stays on the bus until the next one; hosts may rely on this.
-reg [31:0] last_readdata;
-always @(posedge clk) last_readdata <= readdata;
-always @* if (known && !last_reset && !readdatavalid) assert (readdata == last_readdata);
+always @* if (known && !$past(reset) && !readdatavalid) assert ($stable(readdata));
 
 // The renderer gets the live word, which changes at StartScreen only.
-(* hierconn *) wire [31:0] \registers.live_control , \registers.live_background , \camera.lives_0 ;
 reg [31:0] shown;
 always @* case (watched)
-    CONTROL: shown = \registers.live_control ;
-    BACKGROUND: shown = \registers.live_background ;
-    CAMERA: shown = \camera.lives_0 ;
+    CONTROL: shown = registers.live_control;
+    BACKGROUND: shown = registers.live_background;
+    CAMERA: shown = camera.lives_0;
     default: shown = live;  // rectangles are below
 endcase
 wire [2:0] most_reflections = REFLECTIONS;
-wire [53:0] scene = {run, reflections, background, camera_x, camera_y, camera_z};
-reg [31:0] last_shown;
-reg [53:0] last_scene;
-reg last_start;
-always @(posedge clk) begin
-    last_shown <= shown;
-    last_scene <= scene;
-    last_start <= start_screen;
-end
+wire [53:0] scene = {picture_run, picture_reflections, picture_background, camera_x, camera_y, camera_z};
 always @* if (known) begin
     assert (shown == live);
     if (watched == CONTROL) begin
-        assert (run == live[0]);
-        assert (reflections == (live[10:8] > most_reflections ? most_reflections : live[10:8]));
+        assert (picture_run == live[0]);
+        assert (picture_reflections == (live[10:8] > most_reflections ? most_reflections : live[10:8]));
     end
-    if (watched == BACKGROUND) assert (background == live[23:0]);
+    if (watched == BACKGROUND) assert (picture_background == live[23:0]);
     if (watched == CAMERA) assert ({camera_z, camera_y, camera_x} == {live[28:20], live[18:10], live[8:0]});
-    if (!last_start && !last_reset) assert (shown == last_shown && scene == last_scene);
+    if (!$past(start_screen) && !$past(reset)) assert ($stable(shown) && $stable(scene));
 end
 
 // The watched rectangle: its three words as above, whether any was written since reset, and what the renderer gets. The
@@ -233,24 +173,13 @@ wire [95:0] wrote_slot_mask = {
     wrote_address[1:0] == 0 ? wrote_mask : 32'b0, wrote_address[1:0] == 1 ? wrote_mask : 32'b0,
     wrote_address[1:0] == 2 ? wrote_mask : 32'b0
 } & SLOT_BITS;
-reg [95:0] slot_shadow, slot_shadow_1, slot_snapshot, slot_pending, slot_live;
-reg written, written_1, written_snapshot, written_pending, written_live;
-always @(posedge clk) begin
-    if (reset) begin
-        {slot_shadow, slot_shadow_1, slot_pending, slot_live} <= 0;
-        {written, written_1, written_pending, written_live} <= 0;
-    end
-    else begin
-        if (writes && in_slot) begin
-            slot_shadow <= (slot_shadow & ~slot_mask) | ({3{writedata}} & slot_mask);
-            written <= 1;
-        end
-        {slot_shadow_1, written_1} <= {slot_shadow, written};
-        if (committed_2) {slot_pending, written_pending} <= {slot_snapshot, written_snapshot};
-        if (start_screen) {slot_live, written_live} <= {slot_pending, written_pending};
-    end
-    if (committed_1) {slot_snapshot, written_snapshot} <= {slot_shadow, written};
-end
+wire [95:0] slot_shadow, slot_shadow_1, slot_snapshot, slot_pending, slot_live;
+wire written, written_1, written_snapshot, written_pending, written_live;
+copies #(97) slot (
+    clk, reset, writes && in_slot, {1'b1, slot_mask}, {1'b1, {3{writedata}}}, $past(commits), committed_2, start_screen,
+    {written, slot_shadow}, {written_1, slot_shadow_1}, {written_snapshot, slot_snapshot},
+    {written_pending, slot_pending}, {written_live, slot_live}
+);
 function shares(input [31:0] a, input [31:0] b);
     shares = a[8:0] == b[8:0] || a[18:10] == b[18:10] || a[28:20] == b[28:20];
 endfunction
@@ -262,9 +191,7 @@ function wrong(input [95:0] words);
 endfunction
 (* anyconst *) reg [95:0] words;
 (* anyconst *) reg [RECT_BITS-1:0] result;
-(* hierconn *) wire [95:0] \rects.latest_word ;
-(* hierconn *) wire [RECT_BITS-1:0] \rects.sorted_rect_word ;
-always @* assume (\rects.latest_word != words || \rects.sorted_rect_word == result);
+always @* assume (rects.latest_word != words || rects.sorted_rect_word == result);
 
 // A fetch returns the rectangle that is live in its cycle, until the next fetch.
 reg fetched = 0;
@@ -272,67 +199,50 @@ always @(posedge clk)
     if (rects_fetch) fetched <= known && rects_index == watched_slot && written_live && slot_live == words;
 always @* if (known) begin
     assert (rects_usable[watched_slot] == good(slot_live));
-    if (fetched) assert (rects_rect == result);
+    if (fetched) assert (rects_rect_word == result);
 end
 
 // The memories of rect_mem are registers in this model.
-(* hierconn *) wire [95:0] \rects.shadow_words[0] , \rects.shadow_words[1] ;
-(* hierconn *) wire [RECT_BITS-1:0] \rects.banks[0] , \rects.banks[1] , \rects.banks[2] , \rects.banks[3] ,
-    \rects.banks[4] , \rects.banks[5] ;
-(* hierconn *) wire [1:0] \rects.rect_slot_0_i.shadow , \rects.rect_slot_1_i.shadow ,
-    \rects.rect_slot_0_i.pending , \rects.rect_slot_1_i.pending , \rects.rect_slot_0_i.live ,
-    \rects.rect_slot_1_i.live ;
-(* hierconn *) wire [1:0] \rects.written ;
-(* hierconn *) wire \rects.storing , \rects.latest_index ,
-    \rects.rect_slot_0_i.shadow_usable , \rects.rect_slot_1_i.shadow_usable ,
-    \rects.rect_slot_0_i.pending_usable , \rects.rect_slot_1_i.pending_usable , \rects.rect_slot_0_i.bad ,
-    \rects.rect_slot_1_i.bad ;
-wire [95:0] slot_0 = \rects.written [0] ? \rects.shadow_words[0] : 0;
-wire [95:0] slot_1 = \rects.written [1] ? \rects.shadow_words[1] : 0;
-wire [5:0] its_places = watched_slot
-    ? {\rects.rect_slot_1_i.shadow , \rects.rect_slot_1_i.pending , \rects.rect_slot_1_i.live }
-    : {\rects.rect_slot_0_i.shadow , \rects.rect_slot_0_i.pending , \rects.rect_slot_0_i.live };
-wire [1:0] its_shadow = its_places[5:4], its_pending = its_places[3:2], its_live = its_places[1:0];
-wire [2:0] right = watched_slot
-    ? {\rects.banks[5] == result, \rects.banks[3] == result, \rects.banks[1] == result}
+wire [95:0] slot_0 = rects.written[0] ? \rects.shadow_words[0] : 0;
+wire [95:0] slot_1 = rects.written[1] ? \rects.shadow_words[1] : 0;
+wire [5:0] its_banks = watched_slot
+    ? {rects.rect_slot_1_i.shadow, rects.rect_slot_1_i.pending, rects.rect_slot_1_i.live}
+    : {rects.rect_slot_0_i.shadow, rects.rect_slot_0_i.pending, rects.rect_slot_0_i.live};
+wire [1:0] its_shadow = its_banks[5:4], its_pending = its_banks[3:2], its_live = its_banks[1:0];
+wire [2:0] right = watched_slot ? {\rects.banks[5] == result, \rects.banks[3] == result, \rects.banks[1] == result}
     : {\rects.banks[4] == result, \rects.banks[2] == result, \rects.banks[0] == result};
-wire stores_0 = \rects.storing && !\rects.latest_index , stores_1 = \rects.storing && \rects.latest_index ;
+wire stores_0 = rects.storing && !rects.latest_index, stores_1 = rects.storing && rects.latest_index;
 wire stores_it = watched_slot ? stores_1 : stores_0;
 always @* if (known) begin
-    if (bus_commit) assert (!\rects.storing && bad_rectangle == (wrong(slot_0) || wrong(slot_1)));
-    if (stores_0) assert (\rects.latest_word == slot_0);
-    else assert (\rects.rect_slot_0_i.bad == wrong(slot_0));
-    if (stores_1) assert (\rects.latest_word == slot_1);
-    else assert (\rects.rect_slot_1_i.bad == wrong(slot_1));
+    if (bus_commit) assert (!rects.storing && bad_rectangle == (wrong(slot_0) || wrong(slot_1)));
+    if (stores_0) assert (rects.latest_word == slot_0);
+    else assert (rects.rect_slot_0_i.bad == wrong(slot_0));
+    if (stores_1) assert (rects.latest_word == slot_1);
+    else assert (rects.rect_slot_1_i.bad == wrong(slot_1));
     assert ((watched_slot ? slot_1 : slot_0) == slot_shadow_1 && (slot_shadow & ~SLOT_BITS) == 0);
     if (!wrote || wrote_address[ADDRESS_BITS-1:2] != first[ADDRESS_BITS-1:2])
         assert (slot_shadow == slot_shadow_1 && written == written_1);
     else assert (slot_shadow == ((slot_shadow_1 & ~wrote_slot_mask) | ({3{wrote_ones}} & wrote_slot_mask)) && written);
-    assert (\rects.written [watched_slot] == written_1);
+    assert (rects.written[watched_slot] == written_1);
     assert (its_shadow < 3 && its_pending < 3 && its_live < 3);
     if (!stores_it) begin
         if (written_1 && slot_shadow_1 == words) assert (right[its_shadow]);
-        assert ((watched_slot ? \rects.rect_slot_1_i.shadow_usable : \rects.rect_slot_0_i.shadow_usable )
+        assert ((watched_slot ? rects.rect_slot_1_i.shadow_usable : rects.rect_slot_0_i.shadow_usable)
             == good(slot_shadow_1));
     end
     if (written_pending && slot_pending == words) assert (right[its_pending]);
     if (written_live && slot_live == words) assert (right[its_live]);
-    assert ((watched_slot ? \rects.rect_slot_1_i.pending_usable : \rects.rect_slot_0_i.pending_usable )
+    assert ((watched_slot ? rects.rect_slot_1_i.pending_usable : rects.rect_slot_0_i.pending_usable)
         == good(slot_pending));
     if (committed_2) assert (slot_snapshot == slot_shadow_1 && written_snapshot == written_1);
 end
 
 // Invariants: the registers behind the bus are one cycle behind the model, and its pending copies are the same.
-(* hierconn *) wire [31:0] \registers.control_word , \registers.background_word ,
-    \registers.scene_word_0_i.pending , \registers.scene_word_1_i.pending , \camera.scene_word_i.pending ;
-(* hierconn *) wire [15:0] \registers.frame , \registers.slowest_row , \registers.slowest_group ;
-(* hierconn *) wire \registers.sticky_underrun , \registers.sticky_bad , \registers.irq_enable ,
-    \registers.irq_pending , \registers.commit_pending , \registers.reading ;
 reg [31:0] kept, kept_pending;
 always @* case (watched)
-    CONTROL: {kept, kept_pending} = {\registers.control_word , \registers.scene_word_0_i.pending };
-    BACKGROUND: {kept, kept_pending} = {\registers.background_word , \registers.scene_word_1_i.pending };
-    CAMERA: {kept, kept_pending} = {camera_readback, \camera.scene_word_i.pending };
+    CONTROL: {kept, kept_pending} = {registers.control_word, registers.scene_word_0_i.pending};
+    BACKGROUND: {kept, kept_pending} = {registers.background_word, registers.scene_word_1_i.pending};
+    CAMERA: {kept, kept_pending} = {camera_readback, camera.scene_word_i.pending};
     TABLE: {kept, kept_pending} = {slot_0[95:64], pending};
     TABLE + 1: {kept, kept_pending} = {slot_0[63:32], pending};
     TABLE + 2: {kept, kept_pending} = {slot_0[31:0], pending};
@@ -347,25 +257,43 @@ always @* if (known) begin
     else assert (shadow == (((shadow_1 & ~wrote_mask) | wrote_ones) & implemented));
     assert (kept_pending == pending);
     if (committed_2) assert (snapshot == shadow_1 && outstanding);
-    if (committed_1) assert (outstanding);
-    assert (outstanding == (committed_1 || committed_2 || \registers.commit_pending ));
+    if ($past(commits)) assert (outstanding);
+    assert (outstanding == ($past(commits) || committed_2 || registers.commit_pending));
     assert (bus_commit == committed_2);
-    assert (committed_1 == (wrote && wrote_address == CONTROL && wrote_ones[1]));
-    assert (bus_write == wrote && \registers.reading == read_1);
+    assert ($past(commits) == (wrote && wrote_address == CONTROL && wrote_ones[1]));
+    assert (bus_write == wrote && registers.reading == $past(reads));
     if (wrote) assert (bus_address == wrote_address && bus_mask == wrote_mask && (bus_data & bus_mask) == wrote_ones);
-    if (read_1) assert (watched_1 == (bus_address == watched));
-    assert (!(wrote && read_1));
-    assert (\registers.frame == frame);
-    assert (\registers.slowest_row == slowest_row && \registers.slowest_group == slowest_group);
-    assert (\registers.sticky_underrun == status_underrun && \registers.sticky_bad == status_bad);
-    assert (\registers.irq_enable == enabled && \registers.irq_pending == event_pending);
+    if ($past(reads)) assert (watched_1 == (bus_address == watched));
+    assert (!(wrote && $past(reads)));
+    assert (registers.frame == frame);
+    assert (registers.slowest_row == slowest_row && registers.slowest_group == slowest_group);
+    assert (registers.sticky_underrun == status_underrun && registers.sticky_bad == status_bad);
+    assert (registers.irq_enable == enabled && registers.irq_pending == event_pending);
 end
 
 // Covers a written and committed word that is shown and read back, and an interrupt that is raised and cleared.
 reg was_irq = 0;
 always @(posedge clk) was_irq <= !reset && (was_irq || irq);
 always @* begin
-    cover (watched == TABLE + 6 && live[31] && !outstanding && readdatavalid && watched_2);
+    cover (watched == TABLE + 6 && live[31] && !outstanding && readdatavalid && $past(watched_1));
     cover (was_irq && !irq && !reset && enabled);
+end
+endmodule
+
+// Bits as software writes them, now and a cycle ago, and their copies: as committed, pending, and live.
+module copies #(parameter BITS = 32) (
+    input clk, input reset, input write, input [BITS-1:0] mask, input [BITS-1:0] data, input snap, input commit,
+    input go_live, output reg [BITS-1:0] shadow, output reg [BITS-1:0] shadow_1, output reg [BITS-1:0] snapshot,
+    output reg [BITS-1:0] pending, output reg [BITS-1:0] live
+);
+always @(posedge clk) begin
+    if (reset) {shadow, shadow_1, pending, live} <= 0;
+    else begin
+        if (write) shadow <= (shadow & ~mask) | (data & mask);
+        shadow_1 <= shadow;
+        if (commit) pending <= snapshot;
+        if (go_live) live <= pending;
+    end
+    if (snap) snapshot <= shadow;
 end
 endmodule

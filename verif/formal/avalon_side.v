@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: MIT
 // The Avalon-MM side of a bridge, included by the properties of each bus. They declare `active`, an access of the
-// requester, which ends with its cycle `done`, or when the requester gives it up.
+// requester, which ends with its cycle `done`, or when the requester gives it up; `is_write`, `at`, `bytes` and `data`,
+// which the access asks for; and `answer`, the word that a read gets.
 //
 // Assumed: the agent asserts waitrequest for at most MOST_WAIT cycles per transfer, and answers a read with one
 // readdatavalid, 1 to MOST_LATENCY cycles after it accepted it, and nothing else. One cycle of reset at first; it may
 // come again at any time.
+wire read = avm_m0_read, write = avm_m0_write, waitrequest = avm_m0_waitrequest, readdatavalid = avm_m0_readdatavalid;
 wire taken = (read || write) && !waitrequest;
+wire [ADDRESS_BITS+36:0] request = {is_write, at, bytes, data};
 
 // The previous cycle; of the current access, accepted transfers, cycles, and cycles of waitrequest; cycles since an
 // unanswered read was accepted.
 reg known = 0;
-reg last_reset, last_read, last_write, last_waitrequest, outstanding;
+reg outstanding;
 reg [1:0] transfers;
 reg [7:0] age, waited, since;
 always @(posedge clk) begin
     known <= 1;
-    {last_reset, last_read, last_write, last_waitrequest} <= {reset, read, write, waitrequest};
     if (reset || !active || done) {transfers, age, waited} <= 0;
     else begin
         transfers <= transfers + taken;
@@ -32,7 +34,7 @@ always @* begin
     if (known && waited == MOST_WAIT) assume (!waitrequest);
 end
 
-always @* if (known && !last_reset && !reset) begin
+always @* if (known && !$past(reset) && !reset) begin
     // Read and write exclude each other, come only with an access, and nothing overtakes the read that is outstanding.
     assert (!(read && write));
     if (read || write) assert (active && !outstanding);
@@ -40,9 +42,15 @@ always @* if (known && !last_reset && !reset) begin
     if (done) assert (active && transfers + taken == 1);
     if (!done) assert (!(write && taken) && transfers + taken <= 1);
     // A transfer is stable while it waits.
-    if (active && (last_read || last_write) && last_waitrequest) assert (read == last_read && write == last_write);
+    if (active && ($past(read) || $past(write)) && $past(waitrequest)) assert ($stable(read) && $stable(write));
     // Invariants.
     assert (waited <= MOST_WAIT);
     if (outstanding) assert (since >= 1 && since <= MOST_LATENCY);
 end
-always @* if (known && last_reset) assert (!outstanding && transfers == 0 && age == 0 && waited == 0);
+always @* if (known && !reset) begin
+    // A transfer has the kind, address, bytes and data of the access.
+    if (read || write) assert (write == is_write && avm_m0_address == at);
+    if (write) assert (avm_m0_writedata == data && avm_m0_byteenable == bytes);
+    if (done && !is_write) assert (outstanding && readdatavalid && answer == avm_m0_readdata);
+end
+always @* if (known && $past(reset)) assert (!outstanding && transfers == 0 && age == 0 && waited == 0);

@@ -28,20 +28,17 @@
 // "beam-vga180-s6-u2-r2-m1-c8 folded" = ["fold_tester.plane_fold_shift 0", "fold_tester.folded_q as folded_p",
 //   "fold_tester.e as size_a"]
 
-module beam_tester_products #(
-    parameter FOLDED = 0, parameter STAGED = 0, parameter TURN = 0, parameter PATTERNS = 0,
-    parameter COORDINATE_BITS = 9, parameter LOOK_BITS = 24, parameter SLOPE_BITS = 9, parameter STEEPEST = 320,
-    parameter REFLECTIONS = 1, parameter WALK_BITS = 19, parameter SHIFT_BITS = 11, parameter FOLD_BITS = 21,
-    parameter NUMERATOR_BITS = 10, parameter INDEX_BITS = 1, parameter VIEW_DISTANCE = 200
-) (
-    input clk, input step, input signed [SHIFT_BITS:0] mirrored_x, input signed [SHIFT_BITS:0] mirrored_y,
-    input signed [SHIFT_BITS:0] mirrored_z, input [2:0] any_back, input [2:0] met, input [1:0] mirror_axis,
-    input [COORDINATE_BITS-1:0] mirror, input signed [SLOPE_BITS:0] any_dx, input signed [SLOPE_BITS:0] dy,
-    input signed [SLOPE_BITS:0] any_dz, input [6*FOLD_BITS+3*WALK_BITS-1:0] any_fold
-);
+module beam_tester_products;
 localparam LAST = (1 << COORDINATE_BITS) - 1, WIDE = SHIFT_BITS + 3, DISTANCE_BITS = COORDINATE_BITS + 1;
 localparam SUM = FOLD_BITS + 3, MIRRORS = FOLDED ? REFLECTIONS : 0;
 
+`DUT dut (.*);
+(* anyseq *) reg step;
+(* anyseq *) reg signed [SHIFT_BITS:0] mirrored_x, mirrored_y, mirrored_z;
+(* anyseq *) reg [2:0] any_back, met;
+(* anyseq *) reg [1:0] mirror_axis;
+(* anyseq *) reg [COORDINATE_BITS-1:0] mirror;
+(* anyseq *) reg signed [SLOPE_BITS:0] any_dx, dy, any_dz;
 (* anyconst *) reg usable;
 (* anyconst *) reg [1:0] axis;
 (* anyconst *) reg [COORDINATE_BITS-1:0] x, y, z, position, u_low, u_high, v_low, v_high;
@@ -181,15 +178,13 @@ wire [3*SLOPE_BITS*(HIT_AT+1)-1:0] all_sizes;
 wire [(WIDE+SLOPE_BITS+2)*(HIT_AT+1)-1:0] expected;
 wire [WIDE-1:0] size_n = n < 0 ? -n : n;
 wire [SLOPE_BITS-1:0] e = d_a < 0 ? -d_a : d_a;
-delayed #(.BITS(1), .CYCLES(HIT_AT)) step_line (.clk(clk), .now(step), .all(steps));
-delayed #(.BITS(3), .CYCLES(HIT_AT)) sign_line (.clk(clk), .now({dx < 0, dy < 0, dz < 0}), .all(signs));
-delayed #(.BITS(2*WALK_BITS), .CYCLES(HIT_AT)) way_line (.clk(clk), .now(ways), .all(all_ways));
-delayed #(.BITS(2*WALK_BITS), .CYCLES(HIT_AT)) low_line (.clk(clk), .now(lows), .all(all_lows));
-delayed #(.BITS(2*WALK_BITS), .CYCLES(HIT_AT)) high_line (.clk(clk), .now(highs), .all(all_highs));
-delayed #(.BITS(3*SLOPE_BITS), .CYCLES(HIT_AT)) size_line (.clk(clk), .now(sizes), .all(all_sizes));
-delayed #(.BITS(WIDE+SLOPE_BITS+2), .CYCLES(HIT_AT)) hit_line (
-    .clk(clk), .now({defined, at_mirror, size_n, e}), .all(expected)
-);
+delayed #(1, HIT_AT) step_line (clk, step, steps);
+delayed #(3, HIT_AT) sign_line (clk, {dx < 0, dy < 0, dz < 0}, signs);
+delayed #(2 * WALK_BITS, HIT_AT) way_line (clk, ways, all_ways);
+delayed #(2 * WALK_BITS, HIT_AT) low_line (clk, lows, all_lows);
+delayed #(2 * WALK_BITS, HIT_AT) high_line (clk, highs, all_highs);
+delayed #(3 * SLOPE_BITS, HIT_AT) size_line (clk, sizes, all_sizes);
+delayed #(WIDE + SLOPE_BITS + 2, HIT_AT) hit_line (clk, {defined, at_mirror, size_n, e}, expected);
 reg [HIT_AT:0] age = 1;
 always @(posedge clk) age <= {age, 1'b1};
 
@@ -200,23 +195,18 @@ wire [4*WALK_BITS-1:0] bounds = {
     all_lows[2*WALK_BITS*BOUNDS_AT +: WALK_BITS], all_highs[2*WALK_BITS*BOUNDS_AT +: WALK_BITS],
     all_lows[2*WALK_BITS*BOUNDS_AT + WALK_BITS +: WALK_BITS], all_highs[2*WALK_BITS*BOUNDS_AT + WALK_BITS +: WALK_BITS]
 };
-wire [3*SLOPE_BITS-1:0] sizes_read = all_sizes[3*SLOPE_BITS*SLOPE_AT +: 3*SLOPE_BITS];
+assign {step_slope, step_bounds, step_way} = steps[LEAD +: 3];
+assign {slope_dz, slope_dy, slope_dx} = all_sizes[3*SLOPE_BITS*SLOPE_AT +: 3*SLOPE_BITS];
+assign signs_word = signs[3*SIGNS_AT +: 3];
 
 // Words of records, the first field in the highest bits: see `raycaster.rtl.common.records`. Fields of the fold for
 // other axes than that of the rectangle are arbitrary.
-localparam HIT_BITS = 2 + NUMERATOR_BITS + SLOPE_BITS + (PATTERNS ? 5 : 0) + INDEX_BITS;
-localparam WALK_WORD = (TURN ? 6 : 5) * WALK_BITS, FACET_WORD = 3 + DISTANCE_BITS + (TURN ? 0 : WALK_BITS) + LOOK_BITS;
-wire [WALK_WORD-1:0] walk = TURN ? {way_p, way_q, bounds} : {way_p, bounds};
-wire [FACET_WORD-1:0] facet = TURN ? {usable, axis, distance, look} : {usable, axis, distance, way_q, look};
-wire [HIT_BITS-1:0] hit;
-wire hit_valid, hit_at_mirror;
-wire [NUMERATOR_BITS-1:0] numerator;
-wire [SLOPE_BITS-1:0] denominator;
-wire [HIT_BITS-3-NUMERATOR_BITS-SLOPE_BITS:0] rest;
-assign {hit_valid, hit_at_mirror, numerator, denominator, rest} = hit;
+assign walk_word = TURN ? {way_p, way_q, bounds} : {way_p, bounds};
+assign facet_word = TURN ? {usable, axis, distance, look} : {usable, axis, distance, way_q, look};
 generate
-    if (FOLDED) begin: design
+    if (FOLDED) begin: folds
         localparam FIELDS = 6 * FOLD_BITS + 3 * WALK_BITS;
+        (* anyseq *) reg [FIELDS-1:0] any_fold;
         wire [SHIFT_BITS-1:0] shift_x = t_x, shift_y = t_y, shift_z = t_z;
         wire [FIELDS-1:0] fields;
         for (i = 0; i < 9; i = i + 1) begin: parts
@@ -225,23 +215,11 @@ generate
             wire [BITS-1:0] value = i < 3 ? offsets[0 +: FOLD_BITS] : i < 6 ? offsets[FOLD_BITS +: FOLD_BITS] : border;
             assign fields[END-1 -: BITS] = axis == i % 3 ? value : any_fold[END-1 -: BITS];
         end
-        fold_tester dut (
-            .clk(clk), .step_way(steps[LEAD]), .step_bounds(steps[LEAD+1]), .step_slope(steps[LEAD+2]), .index(index),
-            .facet_word(facet), .walk_word(walk), .signs_word(signs[3*SIGNS_AT +: 3]),
-            .slope_dx(sizes_read[0 +: SLOPE_BITS]), .slope_dy(sizes_read[SLOPE_BITS +: SLOPE_BITS]),
-            .slope_dz(sizes_read[2*SLOPE_BITS +: SLOPE_BITS]),
-            .fold_word({met[0], met[1], met[2], back[0], back[1], back[2], shift_x, shift_y, shift_z, mirror_down, fields,
-                mirror_axis, mirror_distance}),
-            .hit_word(hit)
-        );
+        assign fold_word = {met[0], met[1], met[2], back[0], back[1], back[2], shift_x, shift_y, shift_z, mirror_down,
+                            fields, mirror_axis, mirror_distance};
     end
-    else begin: design
-        ray_tester dut (
-            .clk(clk), .step_way(steps[LEAD]), .step_bounds(steps[LEAD+1]), .step_slope(steps[LEAD+2]), .index(index),
-            .facet_word(facet), .walk_word(walk), .signs_word(signs[3*SIGNS_AT +: 3]),
-            .slope_dx(sizes_read[0 +: SLOPE_BITS]), .slope_dy(sizes_read[SLOPE_BITS +: SLOPE_BITS]),
-            .slope_dz(sizes_read[2*SLOPE_BITS +: SLOPE_BITS]), .hit_word(hit)
-        );
+    if (PATTERNS) begin: patterns
+        always @* if (checked && hit_valid) assert (hit_axis == axis && hit_cell == look[26:24]);
     end
 endgenerate
 
@@ -250,23 +228,25 @@ wire [WIDE-1:0] expected_n;
 wire [SLOPE_BITS-1:0] expected_e;
 assign {expected_hit, expected_at_mirror, expected_n, expected_e}
     = expected[(WIDE+SLOPE_BITS+2)*HIT_AT +: WIDE+SLOPE_BITS+2];
-always @* if (age[HIT_AT] && steps[HIT_AT]) begin
+wire checked = age[HIT_AT] && steps[HIT_AT];
+always @* if (checked) begin
     assert (hit_valid == expected_hit);
-    if (hit_valid) assert (hit_at_mirror == expected_at_mirror && numerator == expected_n && denominator == expected_e);
-    if (hit_valid) assert (rest == (PATTERNS ? {axis, look[26:24], index} : index));
+    if (hit_valid) begin
+        assert (hit_at_mirror == expected_at_mirror && hit_index == index);
+        assert (hit_numerator == expected_n && hit_denominator == expected_e);
+    end
 end
 localparam signed [63:0] HALF = 64'd1 << FOLD_BITS - 1;
 always @* assert (FARTHEST < 64'sd1 << WALK_BITS - 1);
 always @* assert (!FOLDED || FARTHEST + FARTHEST_SHIFT * (MIRRORS > 1 ? 2 : 1) < HALF);
 
-always @* cover (age[HIT_AT] && steps[HIT_AT] && hit_valid && (!FOLDED || hit_at_mirror));
-always @* cover (age[HIT_AT] && steps[HIT_AT] && hit_valid && !hit_at_mirror);
+always @* cover (checked && hit_valid && (!FOLDED || hit_at_mirror));
+always @* cover (checked && hit_valid && !hit_at_mirror);
 endmodule
 
 // A value in this cycle, in the lowest bits, and in the previous cycles.
 module delayed #(parameter BITS = 1, parameter CYCLES = 3) (
-    input clk, input [BITS-1:0] now, output [BITS*(CYCLES+1)-1:0] all
-);
+    input clk, input [BITS-1:0] now, output [BITS*(CYCLES+1)-1:0] all);
 reg [BITS*CYCLES-1:0] before;
 assign all = {before, now};
 always @(posedge clk) before <= all;

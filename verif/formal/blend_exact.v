@@ -22,43 +22,34 @@
 // "beam-vga240-s2-u1-r2-m1-c8-materials" = ["colour_mix.apart short", "colour_mix.mirror[0] unless mirror[1]",
 //   "colour_seen.mirror as seen_mirror"]
 
-module blend_exact #(
-    parameter MIRRORS = 1, parameter MIXES = 0, parameter COLOUR_BITS = 8, parameter LATENCY = 2
-) (
-    input clk, input [MIRRORS:0] found, input [24*MIRRORS+23:0] colours, input [3*MIRRORS+2:0] quarters,
-    input [2:0] reflections, input [23:0] background
-);
+module blend_exact;
 localparam SEEN_BITS = MIXES ? 28 : 25, WIDE = 12 + 2 * MIRRORS;
+colour_blend dut (.*);
 
-wire [(MIRRORS+1)*SEEN_BITS-1:0] seen;
-wire [3*COLOUR_BITS-1:0] pixel;
-reg [2:0] last_reflections;
-reg [23:0] last_background;
+// The rays, the first in the lowest bits.
+wire [MIRRORS:0] found;
+wire [24*MIRRORS+23:0] colours;
+wire [3*MIRRORS+2:0] quarters;
 reg [LATENCY:0] age = 0;
-always @(posedge clk) begin
-    last_reflections <= reflections;
-    last_background <= background;
-    age <= {age, 1'b1};
-end
+always @(posedge clk) age <= {age, 1'b1};
 always @* begin
-    assume (reflections <= MIRRORS);
-    if (age[0]) assume (reflections == last_reflections && background == last_background);
+    assume (picture_reflections <= MIRRORS);
+    if (age[0]) assume ($stable(picture_reflections) && $stable(picture_background));
 end
 generate
     genvar ray;
     for (ray = 0; ray <= MIRRORS; ray = ray + 1) begin: rays
-        if (MIXES) assign seen[ray*SEEN_BITS +: SEEN_BITS] = {found[ray], quarters[3*ray +: 3], colours[24*ray +: 24]};
-        else assign seen[ray*SEEN_BITS +: SEEN_BITS] = {found[ray], colours[24*ray +: 24]};
-        always @* assume (MIXES ? quarters[3*ray +: 3] <= 4 : quarters[3*ray +: 3] == 2);
+        wire [SEEN_BITS-1:0] saw = seen[ray*SEEN_BITS +: SEEN_BITS];
+        assign {found[ray], colours[24*ray +: 24]} = {saw[SEEN_BITS-1], saw[23:0]};
+        assign quarters[3*ray +: 3] = MIXES ? saw >> 24 & 7 : 2;
+        always @* assume (quarters[3*ray +: 3] <= 4);
     end
 endgenerate
-colour_blend dut (
-    .clk(clk), .seen(seen), .picture_reflections(reflections), .picture_background(background), .pixel_word(pixel)
-);
 
 // A product with a case for each factor, so that the solver can treat them one by one.
 function [WIDE-1:0] times(input [2:0] factor, input [WIDE-1:0] value);
-    times = factor == 4 ? value << 2 : factor == 3 ? (value << 1) + value : factor == 2 ? value << 1 : factor == 1 ? value : 0;
+    times = factor == 4 ? value << 2 : factor == 3 ? (value << 1) + value : factor == 2 ? value << 1
+        : factor == 1 ? value : 0;
 endfunction
 function [7:0] defined(input integer channel, input [MIRRORS:0] hit, input [24*MIRRORS+23:0] colour,
                        input [3*MIRRORS+2:0] mirror, input [23:0] nothing, input [2:0] last);
@@ -89,13 +80,13 @@ generate
         reg [7:0] expected [0:LATENCY-1];
         integer stage;
         always @(posedge clk) begin
-            expected[0] <= defined(channel, found, colours, quarters, background, reflections);
+            expected[0] <= defined(channel, found, colours, quarters, picture_background, picture_reflections);
             for (stage = 1; stage < LATENCY; stage = stage + 1) expected[stage] <= expected[stage-1];
         end
         always @* if (age[LATENCY-1])
-            assert (pixel[channel*COLOUR_BITS +: COLOUR_BITS] == expected[LATENCY-1] >> 8 - COLOUR_BITS);
+            assert (pixel_word[channel*COLOUR_BITS +: COLOUR_BITS] == expected[LATENCY-1] >> 8 - COLOUR_BITS);
     end
 endgenerate
 
-always @* cover (age[LATENCY-1] && pixel == {3{8'd77}} && reflections == MIRRORS);
+always @* cover (age[LATENCY-1] && pixel_word == {3{8'd77}} && picture_reflections == MIRRORS);
 endmodule

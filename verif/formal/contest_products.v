@@ -13,9 +13,7 @@
 // reach = "LATENCY + 2"
 // quick = ["beam two", "beam two pairs", "beam two turn patterns reflections=4"]
 // designs = ["beam two turn", "beam two pairs turn"]
-// [parameters]
-// LATENCY = "CONTEST_LATENCY"
-// REST_BITS = "CANDIDATE_BITS - 2 - NUMERATOR_BITS - DENOMINATOR_BITS"
+// parameters = { LATENCY = "CONTEST_LATENCY" }
 // [faults]
 // "beam-vga240-s2-u1-r2-m4-c8-turn-patterns" = ["nearest_of_two.second_product edge",
 //   "nearest_of_two.second_high as first_high", "nearest_of_two.second_more[11] 0",
@@ -24,22 +22,13 @@
 // "beam-vga180-s6-u2-r2-m1-c8" = ["nearest_of_two.first_product as second_product",
 //   "nearest_of_two.second_way short", "nearest_of_two.second_way as second_product"]
 
-module contest_products #(
-    parameter LATENCY = 2, parameter NUMERATOR_BITS = 10, parameter DENOMINATOR_BITS = 9, parameter REST_BITS = 4
-) (
-    input clk, input first_valid, input [NUMERATOR_BITS-1:0] first_n, input [DENOMINATOR_BITS-1:0] first_e,
-    input first_corner, input [REST_BITS-1:0] first_rest, input second_valid, input [NUMERATOR_BITS-1:0] second_n,
-    input [DENOMINATOR_BITS-1:0] second_e, input second_corner, input [REST_BITS-1:0] second_rest
-);
-localparam N = NUMERATOR_BITS, E = DENOMINATOR_BITS, WAY_BITS = N + E, WORD_BITS = 2 + WAY_BITS + REST_BITS;
-localparam MULTIPLIER_BITS = 18;
+module contest_products;
+localparam N = NUMERATOR_BITS, E = DENOMINATOR_BITS, WAY_BITS = N + E, MULTIPLIER_BITS = 18;
 
-wire [WORD_BITS-1:0] nearest;
-wire [WORD_BITS-1:0] first = {first_valid, first_corner, first_n, first_e, first_rest};
-wire [WORD_BITS-1:0] second = {second_valid, second_corner, second_n, second_e, second_rest};
-nearest_of_two dut (.clk(clk), .first_word(first), .second_word(second), .nearest_word(nearest));
+nearest_of_two dut (.*);
 
-wire [WAY_BITS-1:0] first_way = first_n * second_e, second_way = second_n * first_e;
+wire [WAY_BITS-1:0] first_way = first_numerator * second_denominator;
+wire [WAY_BITS-1:0] second_way = second_numerator * first_denominator;
 generate
     if (E > MULTIPLIER_BITS) begin: parts
         function [WAY_BITS-1:0] above(input [WAY_BITS-1:0] n, input [E-1:0] e);
@@ -50,22 +39,22 @@ generate
                     if (e[place]) above = above + (n << place);
             end
         endfunction
-        wire [N+MULTIPLIER_BITS-1:0] first_below = first_n * second_e[MULTIPLIER_BITS-1:0];
-        wire [N+MULTIPLIER_BITS-1:0] second_below = second_n * first_e[MULTIPLIER_BITS-1:0];
+        wire [N+MULTIPLIER_BITS-1:0] first_below = first_numerator * second_denominator[MULTIPLIER_BITS-1:0];
+        wire [N+MULTIPLIER_BITS-1:0] second_below = second_numerator * first_denominator[MULTIPLIER_BITS-1:0];
         always @* begin
-            assume (first_way == first_below + above(first_n, second_e));
-            assume (second_way == second_below + above(second_n, first_e));
+            assume (first_way == first_below + above(first_numerator, second_denominator));
+            assume (second_way == second_below + above(second_numerator, first_denominator));
         end
     end
 endgenerate
 
 reg [LATENCY-1:0] age = 0;
-reg [LATENCY*WORD_BITS-1:0] expected;
+reg [LATENCY*CANDIDATE_BITS-1:0] expected;
 always @(posedge clk) begin
     age <= {age, 1'b1};
-    expected <= {expected, second_valid && (!first_valid || second_way < first_way) ? second : first};
+    expected <= {expected, second_valid && (!first_valid || second_way < first_way) ? second_word : first_word};
 end
-always @* if (age[LATENCY-1]) assert (nearest == expected[LATENCY*WORD_BITS-1 -: WORD_BITS]);
+always @* if (age[LATENCY-1]) assert (nearest_word == expected[LATENCY*CANDIDATE_BITS-1 -: CANDIDATE_BITS]);
 
-always @* cover (age[LATENCY-1] && nearest[WORD_BITS-1] && nearest[REST_BITS-1:0] == 1);
+always @* cover (age[LATENCY-1] && nearest_valid && nearest_index == 1);
 endmodule

@@ -26,20 +26,10 @@
 // "tiny48-u2-r2-m1-f0t-d1-c8 product" = ["divider.load_divider 0", "divider_step.next_digits halved",
 //   "divider_step.next_digits[1] 0"]
 
-module divider_exact #(
-    parameter WIDTH = 9, parameter BITS = 1, parameter STEPS = 9, parameter NEAREST = 0, parameter PART = 2
-) (
-    input clk, input load_divider, input store_quotient, input [WIDTH+8:0] dividend, input [8:0] divisor
-);
+module divider_exact;
 localparam DIGITS = BITS * STEPS, EXTRA = DIGITS - WIDTH, PRODUCT = DIGITS + 10;
 
-wire [WIDTH-1:0] quotient;
-wire overflow;
-
-divider dut (
-    .clk(clk), .load_divider(load_divider), .store_quotient(store_quotient), .dividend(dividend), .divisor(divisor),
-    .quotient(quotient), .overflow(overflow)
-);
+divider dut (.*);
 
 reg busy = 0, stored = 0;
 reg [4:0] step;
@@ -47,20 +37,14 @@ reg [WIDTH+8:0] held_dividend, result_dividend;
 reg [8:0] held_divisor, result_divisor;
 always @(posedge clk) begin
     if (load_divider) begin
-        busy <= 1;
-        step <= 0;
-        held_dividend <= dividend;
-        held_divisor <= divisor;
+        {busy, step} <= {1'b1, 5'd0};
+        {held_dividend, held_divisor} <= {dividend, divisor};
     end
     else begin
         if (store_quotient) busy <= 0;
         step <= step + 1;
     end
-    if (store_quotient) begin
-        stored <= 1;
-        result_dividend <= held_dividend;
-        result_divisor <= held_divisor;
-    end
+    if (store_quotient) {stored, result_dividend, result_divisor} <= {1'b1, held_dividend, held_divisor};
 end
 always @* begin
     assume (store_quotient == (busy && step == STEPS - 1));
@@ -82,8 +66,7 @@ endfunction
 
 // The result is valid from the cycle after store_quotient. `down` is the quotient rounded down.
 reg [WIDTH-1:0] down;
-(* hierconn *) wire [DIGITS-1:0] \dut.last_pending ;
-always @(posedge clk) if (store_quotient) down <= \dut.last_pending ;
+always @(posedge clk) if (store_quotient) down <= dut.last_pending;
 reg [PRODUCT-1:0] result_product;  // before the last step
 wire [PRODUCT-1:0] last_step = append(result_product, down[BITS-1:0], result_divisor);
 wire [PRODUCT-1:0] multiple = times(down, result_divisor);
@@ -105,35 +88,25 @@ end
 // Invariants for each step and for the result, in parts that are proved in order, each on the basis of the previous
 // ones: product + remainder are the dividend's top digits; the product is the divisor times the quotient's digits so
 // far. The third part is the claim.
-(* hierconn *) wire [8:0] \dut.remainder , \dut.divisor_held , \dut.last_remainder ;
-(* hierconn *) wire [DIGITS-1:0] \dut.pending ;
-(* hierconn *) wire \dut.too_large ;
-reg [PRODUCT-1:0] last_product;
 reg [8:0] result_remainder;
-wire [PRODUCT-1:0] product = step == 0 ? 0 : append(last_product, \dut.pending [BITS-1:0], held_divisor);
+wire [PRODUCT-1:0] product = step == 0 ? 0 : append($past(product), dut.pending[BITS-1:0], held_divisor);
 wire fits = held_dividend >> WIDTH < held_divisor;
-always @(posedge clk) begin
-    last_product <= product;
-    if (store_quotient) begin
-        result_product <= product;
-        result_remainder <= \dut.last_remainder ;
-    end
-end
+always @(posedge clk) if (store_quotient) {result_product, result_remainder} <= {product, dut.last_remainder};
 always @* if (busy) begin
     assert (step < STEPS);
-    assert (\dut.divisor_held == held_divisor);
-    assert (\dut.too_large == !fits);
+    assert (dut.divisor_held == held_divisor);
+    assert (dut.too_large == !fits);
 end
 
 genvar k;
 generate
     for (k = 0; k < STEPS; k = k + 1) begin: after
-        wire [DIGITS-1:0] digits = \dut.pending & ((1 << BITS * k) - 1);
+        wire [DIGITS-1:0] digits = dut.pending & ((1 << BITS * k) - 1);
         wire [DIGITS-1:0] rest = held_dividend << BITS * k;
         wire [WIDTH+8:0] top = held_dividend >> (DIGITS - BITS * k);
         wire short = !fits || k == 0 || digits >> (BITS * k - EXTRA) == 0;
-        wire divided = \dut.pending == (rest | digits) && (!fits || (
-            product + \dut.remainder == top && product <= top && \dut.remainder < held_divisor));
+        wire divided = dut.pending == (rest | digits) && (!fits || (
+            product + dut.remainder == top && product <= top && dut.remainder < held_divisor));
         always @* if (busy && step == k) begin
             if (PART == 0) assert (divided && short);
             if (PART == 1) assume (short);
@@ -142,7 +115,7 @@ generate
 endgenerate
 
 // The quotient's digits so far.
-wire [DIGITS-1:0] so_far = \dut.pending & ((1 << BITS * step) - 1);
+wire [DIGITS-1:0] so_far = dut.pending & ((1 << BITS * step) - 1);
 wire [PRODUCT-1:0] so_far_multiple = times(so_far, held_divisor);
 always @* if (PART == 1) begin
     assume (so_far_multiple == append(times(so_far >> BITS, held_divisor), so_far[BITS-1:0], held_divisor));

@@ -8,7 +8,6 @@
 // [proof]
 // claim = "the eye is the camera mirrored in each plane, in range, with the right signs and corner, at full width"
 // modules = ["eye_register"]
-// parameters = { BASIS_BITS = "CAMERA_BITS - 3 * COORDINATE_BITS" }
 // induction = 1
 // reach = 6
 // quick = ["exact one-unit turn materials patterns reflections=4"]
@@ -20,71 +19,40 @@
 //   "eye_register.image signed-short", "eye_register.difference negated", "eye_register.found_at_mirror 0",
 //   "eye_register.flipped_y 1"]
 
-module eye_exact #(
-    parameter COORDINATE_BITS = 9, parameter LOOK_BITS = 24, parameter BASIS_BITS = 0, parameter EYE_BITS = 11,
-    parameter REFLECTIONS = 1
-) (
-    input clk, input load, input store, input [COORDINATE_BITS-1:0] camera_x, input [COORDINATE_BITS-1:0] camera_y,
-    input [COORDINATE_BITS-1:0] camera_z, input [BASIS_BITS:0] basis, input [2:0] negative, input [1:0] axis,
-    input [COORDINATE_BITS-1:0] position, input [LOOK_BITS-1:0] look, input [EYE_BITS-2:0] distance, input corner
-);
+module eye_exact;
 localparam LAST = (1 << COORDINATE_BITS) - 1, WIDE = EYE_BITS + 3;
 
-wire signed [EYE_BITS-1:0] x, y, z;
-wire [2:0] signs, met;
-wire active;
-wire [1:0] mirror_axis;
-wire [EYE_BITS-2:0] mirror;
-wire [3 * COORDINATE_BITS + BASIS_BITS:0] camera = {camera_x, camera_y, camera_z, basis};
-generate
-    if (REFLECTIONS > 1) begin: design
-        eye_register dut (
-            .clk(clk), .found_distance(distance), .found_at_mirror(corner), .steps_screen_to_ray(load),
-            .steps_store_ray(store), .camera_word(camera[3 * COORDINATE_BITS + BASIS_BITS:1]),
-            .initial_signs_word(negative), .found_surface_word({axis, position, look}), .eye_x(x), .eye_y(y), .eye_z(z),
-            .signs_word(signs), .mirror_word({active, mirror_axis, mirror, met})
-        );
-    end
-    else begin: design
-        eye_register dut (
-            .clk(clk), .found_distance(distance), .steps_screen_to_ray(load), .steps_store_ray(store),
-            .camera_word(camera[3 * COORDINATE_BITS + BASIS_BITS:1]), .initial_signs_word(negative),
-            .found_surface_word({axis, position, look}), .eye_x(x), .eye_y(y), .eye_z(z), .signs_word(signs),
-            .mirror_word({active, mirror_axis, mirror})
-        );
-        assign met = 1 << (2 - mirror_axis);
-    end
-endgenerate
+eye_register dut (.*);
+wire [1:0] axis = found_surface_axis;
+wire [2:0] met, bit_of_last = 3'b100 >> mirror_axis;
+wire corner;
 always @* assume (axis < 3);
 
 // The definition. As in the design, x is the highest bit of three.
 reg loaded = 1'b0;
 reg [2:0] mirrors;
-reg signed [WIDE-1:0] eye_x, eye_y, eye_z;
+reg signed [WIDE-1:0] x, y, z;
 reg [2:0] turned, met_there;
 reg [1:0] last_axis;
 reg [EYE_BITS-2:0] last_distance;
-wire [2:0] bit_of_axis = axis == 0 ? 3'b100 : axis == 1 ? 3'b010 : 3'b001;
-wire signed [WIDE-1:0] plane = {1'b0, position};
+wire [2:0] bit_of_axis = 3'b100 >> axis;
+wire signed [WIDE-1:0] plane = {1'b0, found_surface_position};
 always @(posedge clk) begin
-    if (load) begin
+    if (steps_screen_to_ray) begin
         loaded <= 1'b1;
-        mirrors <= 0;
-        eye_x <= {1'b0, camera_x};
-        eye_y <= {1'b0, camera_y};
-        eye_z <= {1'b0, camera_z};
-        turned <= 0;
-        met_there <= 0;
+        {mirrors, turned, met_there} <= 0;
+        x <= {1'b0, camera_x};
+        y <= {1'b0, camera_y};
+        z <= {1'b0, camera_z};
     end
-    else if (store) begin
+    else if (steps_store_ray) begin
         if (mirrors <= REFLECTIONS) mirrors <= mirrors + 1;
-        if (axis == 0) eye_x <= 2 * plane - eye_x;
-        if (axis == 1) eye_y <= 2 * plane - eye_y;
-        if (axis == 2) eye_z <= 2 * plane - eye_z;
+        if (axis == 0) x <= 2 * plane - x;
+        if (axis == 1) y <= 2 * plane - y;
+        if (axis == 2) z <= 2 * plane - z;
         turned <= turned ^ bit_of_axis;
-        met_there <= REFLECTIONS > 1 && corner ? met_there | bit_of_axis : bit_of_axis;
-        last_axis <= axis;
-        last_distance <= distance;
+        met_there <= corner ? met_there | bit_of_axis : bit_of_axis;
+        {last_axis, last_distance} <= {axis, found_distance};
     end
 end
 
@@ -92,19 +60,25 @@ function in_reach(input signed [WIDE-1:0] place, input [2:0] count);
     in_reach = place >= -$signed({1'b0, LAST * count}) && place <= $signed({1'b0, LAST * (count + 1)});
 endfunction
 always @* if (loaded && mirrors <= REFLECTIONS) begin
-    assert (in_reach(eye_x, mirrors) && in_reach(eye_y, mirrors) && in_reach(eye_z, mirrors));
-    assert (x == eye_x && y == eye_y && z == eye_z);
-    assert (signs == (negative ^ turned));
-    assert (active == (mirrors != 0));
+    assert (in_reach(x, mirrors) && in_reach(y, mirrors) && in_reach(z, mirrors));
+    assert (eye_x == x && eye_y == y && eye_z == z);
+    assert (signs_word == (initial_signs_word ^ turned));
+    assert (mirror_active == (mirrors != 0));
     if (REFLECTIONS > 1 || mirrors != 0) assert (met == met_there);
-    if (mirrors != 0) assert (mirror_axis == last_axis && mirror == last_distance && met_there[2 - last_axis]);
-    if (mirrors != 0) assert (last_axis < 3);
+    if (mirrors != 0) begin
+        assert (mirror_axis == last_axis && mirror_distance == last_distance && met_there[2 - last_axis]);
+        assert (last_axis < 3);
+    end
 end
 
-always @* cover (loaded && mirrors == REFLECTIONS && (REFLECTIONS == 0 || x > LAST));
+always @* cover (loaded && mirrors == REFLECTIONS && (REFLECTIONS == 0 || eye_x > LAST));
 generate
     if (REFLECTIONS > 1) begin: corners
+        assign {met, corner} = {mirror_met_x, mirror_met_y, mirror_met_z, found_at_mirror};
         always @* cover (loaded && mirrors == REFLECTIONS && (met & (met - 1)));
+    end
+    else begin: corners
+        assign {met, corner} = {bit_of_last, 1'b0};
     end
 endgenerate
 endmodule

@@ -10,10 +10,9 @@ for an input of that instance alone; a signal may have an index. Kinds are those
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from raycaster.verif.formal.prover import Property, make_model, solve
 
@@ -44,26 +43,19 @@ OTHERS = {"as": None, "and": "$and", "or": "$or", "unless": "$and"}
 EDGES = {"$lt": "$le", "$le": "$lt", "$gt": "$ge", "$ge": "$gt"}
 
 
-@dataclass(frozen=True)
-class Fault:
-    """A fault, as the module says: its text, its place, its kind, and the steps within which it is found."""
+class Fault(NamedTuple):
+    """A fault: the module, an instance if there is one, and the signal or port; the kind; the steps from reset."""
 
-    text: str
+    place: list[str]
+    kind: str
+    steps: int
 
-    @property
-    def place(self) -> list[str]:
-        """The module, an instance if there is one, and the signal or port."""
-        return self.text.split()[0].split(".")
 
-    @property
-    def kind(self) -> str:
-        """The kind, with the other signal."""
-        return self.text.partition(" ")[2].partition(" in ")[0]
-
-    @property
-    def steps(self) -> int:
-        """Steps from reset."""
-        return int(self.text.partition(" in ")[2] or STEPS)
+def parsed(text: str) -> Fault:
+    """Read the text of a fault."""
+    what, _, steps = text.partition(" in ")
+    place, _, kind = what.partition(" ")
+    return Fault(place.split("."), kind, int(steps or STEPS))
 
 
 class Module:
@@ -188,7 +180,7 @@ class Module:
         return [*range(self._last - count + 1, self._last + 1)]
 
 
-def plant(path: Path, faults: list[Fault]) -> None:
+def plant(path: Path, faults: Sequence[str]) -> None:
     """Plant faults in a netlist in Yosys's JSON, numbered from 1.
 
     Raises:
@@ -199,17 +191,18 @@ def plant(path: Path, faults: list[Fault]) -> None:
                if not int(module["attributes"].get("blackbox", "0"), 2)}  # fmt: skip
     for module in modules.values():
         module.pass_on(set(modules))
-    for number, fault in enumerate(faults, 1):
+    for number, text in enumerate(faults, 1):
+        fault = parsed(text)
         try:
             modules[fault.place[0]].plant(number, fault)
         except (KeyError, ValueError) as error:
-            raise ValueError(f"{fault.text}: {error}") from error
+            raise ValueError(f"{text}: {error}") from error
     path.write_text(json.dumps(netlist))
 
 
 def model_with_faults(proof: Property, directory: Path) -> None:
     """Write the model of a property with all its faults, as `make_model` writes it without."""
-    make_model(proof, directory, lambda path: plant(path, [Fault(text) for text in proof.faults]))
+    make_model(proof, directory, lambda path: plant(path, proof.faults))
 
 
 def outcome(proof: Property, directory: Path, text: str, timeout: float) -> str:
@@ -221,7 +214,7 @@ def outcome(proof: Property, directory: Path, text: str, timeout: float) -> str:
         text: the fault; an empty one chooses none.
         timeout: time limit in seconds.
     """
-    fault, number = Fault(text), proof.faults.index(text) + 1 if text else 0
+    fault, number = parsed(text), proof.faults.index(text) + 1 if text else 0
     model = directory / f"fault{number}.smt2"
     with (directory / f"{proof.wrapper}.smt2").open() as lines:
         chosen = f"((state |{proof.wrapper}_s|)) (_ BitVec {BITS}) #b{number:0{BITS}b}) ; \\fault\n"

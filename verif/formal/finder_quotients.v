@@ -26,36 +26,28 @@
 
 // A product of a width used nowhere else, so it is any function; overflow and quotient are bits of it.
 module any_division #(parameter POSITION_BITS = 9) (
-    input [POSITION_BITS+8:0] dividend, input [8:0] divisor, output [POSITION_BITS:0] result
-);
+    input [POSITION_BITS+8:0] dividend, input [8:0] divisor, output [POSITION_BITS:0] result);
 wire [47:0] value = dividend * divisor;
 assign result = value;
 endmodule
 
-module finder_quotients #(
-    parameter POSITION_BITS = 9, parameter FRACTION_BITS = 0, parameter LOOK_BITS = 24, parameter STEPS = 9,
-    parameter PATTERNS = 0
-) (
-    input clk, input find, input load, input give_up, input [LOOK_BITS+46:0] rect, input [POSITION_BITS-1:0] x,
-    input [POSITION_BITS-1:0] y, input [POSITION_BITS-1:0] z, input [2:0] backward, input [8:0] dx, input [8:0] dy,
-    input [8:0] dz
-);
+module finder_quotients;
 localparam P = POSITION_BITS, RECT_BITS = LOOK_BITS + 47, RAY_BITS = 3 * P + 30;
 
 // Planes taken and divisions started in the previous cycles, one bit per cycle.
 reg [1:0] found = 0;
 reg [STEPS+1:0] loaded = 0;
-wire store = loaded[STEPS-1], verdict = loaded[STEPS+1];
-wire [RAY_BITS-1:0] ray = {x, y, z, backward, dx, dy, dz};
-reg [RAY_BITS-1:0] last_ray;
+wire steps_store_quotient = loaded[STEPS-1], verdict = loaded[STEPS+1];
+wire [P-1:0] x = ray_x, y = ray_y, z = ray_z;
+wire [RAY_BITS-1:0] ray = {ray_word, slope_dx, slope_dy, slope_dz};
+(* anyseq *) reg give_up;
 always @(posedge clk) begin
-    found <= {found, find};
-    loaded <= {loaded, load && !give_up};
-    last_ray <= ray;
+    found <= {found, steps_find_intersection};
+    loaded <= {loaded, steps_load_divider && !give_up};
 end
 always @* begin
-    if (load) assume (found[1] && !found[0] && loaded[STEPS-2:0] == 0);
-    if (found != 0 || loaded != 0) assume (ray == last_ray);
+    if (steps_load_divider) assume (found[1] && !found[0] && loaded[STEPS-2:0] == 0);
+    if (found != 0 || loaded != 0) assume ($stable(ray));
 end
 generate
     genvar apart;
@@ -66,8 +58,7 @@ endgenerate
 
 // c - d: the distance of the plane.
 function signed [P:0] numerator(
-    input [RECT_BITS-1:0] of, input signed [P:0] from_x, input signed [P:0] from_y, input signed [P:0] from_z
-);
+    input [RECT_BITS-1:0] of, input signed [P:0] from_x, input signed [P:0] from_y, input signed [P:0] from_z);
     reg signed [P:0] plane;
     begin
         plane = of[RECT_BITS-3 -: 9] << FRACTION_BITS;
@@ -79,12 +70,13 @@ function [P-1:0] size(input signed [P:0] number);
 endfunction
 
 // The golden model's operands: e and d are those of the plane's axis; u is x, or y if the plane is on x.
-wire [1:0] axis = rect[RECT_BITS-1 -: 2];
-wire signed [P:0] n = numerator(rect, x, y, z);
-wire [8:0] e = axis == 0 ? dx : axis == 1 ? dy : dz, b_u = axis == 0 ? dy : dx, b_v = axis < 2 ? dz : dy;
-wire e_negative = axis == 0 ? backward[0] : axis == 1 ? backward[1] : backward[2];
-wire u_negative = axis == 0 ? backward[1] : backward[0], v_negative = axis < 2 ? backward[2] : backward[1];
-wire towards = e != 0 && (e_negative ? n < 0 : n > 0);
+wire [1:0] axis = rect_axis;
+wire signed [P:0] n = numerator(rect_word, x, y, z);
+wire [8:0] e = axis == 0 ? slope_dx : axis == 1 ? slope_dy : slope_dz;
+wire [8:0] b_u = axis == 0 ? slope_dy : slope_dx, b_v = axis < 2 ? slope_dz : slope_dy;
+wire e_negative = axis == 0 ? ray_dx : axis == 1 ? ray_dy : ray_dz;
+wire u_negative = axis == 0 ? ray_dy : ray_dx, v_negative = axis < 2 ? ray_dz : ray_dy;
+wire runs_towards = e != 0 && (e_negative ? n < 0 : n > 0);
 wire [P-1:0] distance = size(n);
 wire [P+8:0] product_u = b_u * distance, product_v = b_v * distance;
 wire [P:0] result_u, result_v;
@@ -93,32 +85,32 @@ any_division #(P) golden_v (.dividend(product_v), .divisor(e), .result(result_v)
 
 // Values that follow a rectangle into the dividers and out of them.
 localparam WAY_BITS = 2 * P + 5;
-wire [WAY_BITS-1:0] ways = {towards, u_negative, v_negative, result_u, result_v};
-reg [RECT_BITS-1:0] taken_rect, divided_rect, offered;
+wire [WAY_BITS-1:0] ways = {runs_towards, u_negative, v_negative, result_u, result_v};
+reg [RECT_BITS-1:0] taken_rect, divided_rect, offered_word;
 reg [WAY_BITS-1:0] taken_ways, divided_ways, offered_ways;
 wire [P-1:0] taken_distance = size(numerator(taken_rect, x, y, z));
 wire [P-1:0] divided_distance = size(numerator(divided_rect, x, y, z));
-wire [P-1:0] offered_distance = size(numerator(offered, x, y, z));
+wire [P-1:0] offered_distance = size(numerator(offered_word, x, y, z));
 reg [P+8:0] taken_product_u, taken_product_v;
 reg [8:0] taken_b_u, taken_b_v, taken_e;
 always @(posedge clk) begin
-    if (find) begin
-        {taken_rect, taken_ways} <= {rect, ways};
+    if (steps_find_intersection) begin
+        {taken_rect, taken_ways} <= {rect_word, ways};
         {taken_product_u, taken_product_v} <= {product_u, product_v};
         {taken_b_u, taken_b_v, taken_e} <= {b_u, b_v, e};
     end
-    if (load) {divided_rect, divided_ways} <= {taken_rect, taken_ways};
-    if (store) {offered, offered_ways} <= {divided_rect, divided_ways};
+    if (steps_load_divider) {divided_rect, divided_ways} <= {taken_rect, taken_ways};
+    if (steps_store_quotient) {offered_word, offered_ways} <= {divided_rect, divided_ways};
 end
 
 // The golden model's verdict.
 wire ahead, back_u, back_v;
 wire [P:0] far_u, far_v;
 assign {ahead, back_u, back_v, far_u, far_v} = offered_ways;
-wire [1:0] across = offered[RECT_BITS-1 -: 2];
-wire [P-1:0] depth_there = offered[RECT_BITS-3 -: 9] << FRACTION_BITS;
-wire signed [P+1:0] low_u = offered[35:27] << FRACTION_BITS, high_u = offered[26:18] << FRACTION_BITS;
-wire signed [P+1:0] low_v = offered[17:9] << FRACTION_BITS, high_v = offered[8:0] << FRACTION_BITS;
+wire [1:0] across = offered_axis;
+wire [P-1:0] depth_there = offered_position << FRACTION_BITS;
+wire signed [P+1:0] low_u = offered_u_low << FRACTION_BITS, high_u = offered_u_high << FRACTION_BITS;
+wire signed [P+1:0] low_v = offered_v_low << FRACTION_BITS, high_v = offered_v_high << FRACTION_BITS;
 wire signed [P+1:0] a_u = across == 0 ? y : x, a_v = across < 2 ? z : y;
 wire signed [P+1:0] way_u = far_u[P-1:0], way_v = far_v[P-1:0];
 wire signed [P+1:0] at_u = back_u ? a_u - way_u : a_u + way_u, at_v = back_v ? a_v - way_v : a_v + way_v;
@@ -127,65 +119,41 @@ wire [P-1:0] golden_x = across == 0 ? depth_there : at_u, golden_z = across < 2 
 wire [P-1:0] golden_y = across == 0 ? at_u : across == 1 ? depth_there : at_v;
 wire [P-1:0] golden_depth = golden_x < x ? x - golden_x : golden_x - x;
 
-wire hit, is_towards;
-wire [P-1:0] depth;
-wire [3*P-1:0] point;
-wire [RAY_BITS-28:0] ray_word = {x, y, z, backward[0], backward[1], backward[2]};
+intersection_finder dut (.*);
 generate
     if (PATTERNS) begin: patterns
-        wire odd_u, odd_v;
-        intersection_finder dut (
-            .clk(clk), .steps_find_intersection(find), .steps_load_divider(load), .steps_store_quotient(store),
-            .rect_word(rect), .offered_word(offered), .ray_word(ray_word), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz),
-            .hit(hit), .depth(depth), .odd_u(odd_u), .odd_v(odd_v), .towards(is_towards), .point_word(point)
-        );
-        // Above the bounds and the second colour: log2 of a cell's size, minus three.
-        wire [2:0] cell_size = offered[60 +: 3];
-        wire [8:0] cell_u = at_u >> FRACTION_BITS + 3 + cell_size, cell_v = at_v >> FRACTION_BITS + 3 + cell_size;
+        wire [8:0] cell_u = at_u >> FRACTION_BITS + 3 + offered_cell, cell_v = at_v >> FRACTION_BITS + 3 + offered_cell;
         always @* if (verdict && hit) assert (odd_u == cell_u[0] && odd_v == cell_v[0]);
     end
-    else begin: patterns
-        intersection_finder dut (
-            .clk(clk), .steps_find_intersection(find), .steps_load_divider(load), .steps_store_quotient(store),
-            .rect_word(rect), .offered_word(offered), .ray_word(ray_word), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz),
-            .hit(hit), .depth(depth), .towards(is_towards), .point_word(point)
-        );
-    end
 endgenerate
-always @* if (found != 0) assert (is_towards == taken_ways[WAY_BITS-1]);
+always @* if (found != 0) assert (towards == taken_ways[WAY_BITS-1]);
 always @* if (verdict) begin
     assert (hit == golden_hit);
-    if (hit) assert (depth == golden_depth && point == {golden_x, golden_y, golden_z});
+    if (hit) assert (depth == golden_depth && point_word == {golden_x, golden_y, golden_z});
 end
 
 // The units of both axes, and the dividers' contract: a result belongs to the operands at load_divider, and is valid
 // from the cycle after its store.
-(* hierconn *) wire [8:0] \patterns.dut.intersection_helper_0_i.started_b , \patterns.dut.intersection_helper_1_i.started_b ;
-(* hierconn *) wire [8:0] \patterns.dut.intersection_helper_0_i.started_e , \patterns.dut.intersection_helper_1_i.started_e ;
-(* hierconn *) wire [P+1:0] \patterns.dut.intersection_helper_0_i.started_word , \patterns.dut.intersection_helper_1_i.started_word ;
-(* hierconn *) wire [P+1:0] \patterns.dut.intersection_helper_0_i.loaded_word , \patterns.dut.intersection_helper_1_i.loaded_word ;
-(* hierconn *) wire [P+1:0] \patterns.dut.intersection_helper_0_i.stored_word , \patterns.dut.intersection_helper_1_i.stored_word ;
-(* hierconn *) wire [P+8:0] \patterns.dut.intersection_helper_0_i.product , \patterns.dut.intersection_helper_1_i.product ;
-(* hierconn *) wire \patterns.dut.intersection_helper_0_i.overflow , \patterns.dut.intersection_helper_1_i.overflow ;
-(* hierconn *) wire [P-1:0] \patterns.dut.intersection_helper_0_i.quotient , \patterns.dut.intersection_helper_1_i.quotient ;
 generate
     genvar unit;
     for (unit = 0; unit < 2; unit = unit + 1) begin: units
-        wire [8:0] started_b = unit ? \patterns.dut.intersection_helper_1_i.started_b : \patterns.dut.intersection_helper_0_i.started_b ;
-        wire [8:0] started_e = unit ? \patterns.dut.intersection_helper_1_i.started_e : \patterns.dut.intersection_helper_0_i.started_e ;
-        wire [P+1:0] started = unit ? \patterns.dut.intersection_helper_1_i.started_word : \patterns.dut.intersection_helper_0_i.started_word ;
-        wire [P+1:0] in_divider = unit ? \patterns.dut.intersection_helper_1_i.loaded_word : \patterns.dut.intersection_helper_0_i.loaded_word ;
-        wire [P+1:0] stored = unit ? \patterns.dut.intersection_helper_1_i.stored_word : \patterns.dut.intersection_helper_0_i.stored_word ;
-        wire [P+8:0] product = unit ? \patterns.dut.intersection_helper_1_i.product : \patterns.dut.intersection_helper_0_i.product ;
-        wire overflow = unit ? \patterns.dut.intersection_helper_1_i.overflow : \patterns.dut.intersection_helper_0_i.overflow ;
-        wire [P-1:0] quotient = unit ? \patterns.dut.intersection_helper_1_i.quotient : \patterns.dut.intersection_helper_0_i.quotient ;
+        wire [8:0] started_b = unit ? dut.intersection_helper_1_i.started_b : dut.intersection_helper_0_i.started_b;
+        wire [8:0] started_e = unit ? dut.intersection_helper_1_i.started_e : dut.intersection_helper_0_i.started_e;
+        wire [P+1:0] started =
+            unit ? dut.intersection_helper_1_i.started_word : dut.intersection_helper_0_i.started_word;
+        wire [P+1:0] in_divider =
+            unit ? dut.intersection_helper_1_i.loaded_word : dut.intersection_helper_0_i.loaded_word;
+        wire [P+1:0] stored = unit ? dut.intersection_helper_1_i.stored_word : dut.intersection_helper_0_i.stored_word;
+        wire [P+8:0] product = unit ? dut.intersection_helper_1_i.product : dut.intersection_helper_0_i.product;
+        wire overflow = unit ? dut.intersection_helper_1_i.overflow : dut.intersection_helper_0_i.overflow;
+        wire [P-1:0] quotient = unit ? dut.intersection_helper_1_i.quotient : dut.intersection_helper_0_i.quotient;
 
         wire [P:0] result;
         reg [P:0] result_held, result_stored;
         any_division #(P) division (.dividend(product), .divisor(started_e), .result(result));
         always @(posedge clk) begin
-            if (load) result_held <= result;
-            if (store) result_stored <= result_held;
+            if (steps_load_divider) result_held <= result;
+            if (steps_store_quotient) result_stored <= result_held;
         end
         always @* assume ({overflow, quotient} == result_stored);
 

@@ -25,12 +25,7 @@
 // "2 and 1 bits, 1 mirrors" = ["fold_tester.met_2 1", "fold_tester.plane_fold_distance edge",
 //   "ray_fold.sum_xz_1 increased", "bound_tester.back_1 0", "bound_tester.low_edge as twice_low"]
 
-module fold_exact #(
-    parameter COORDINATE_BITS = 2, parameter SLOPE_BITS = 2, parameter VIEW_DISTANCE = 2, parameter MIRRORS = 1,
-    parameter WALK_BITS = 6, parameter FOLD_BITS = 7, parameter NUMERATOR_BITS = 4
-) (
-    input clk
-);
+module fold_exact;
 localparam SHIFT_BITS = COORDINATE_BITS + 2, WIDE = 2 * (COORDINATE_BITS + SLOPE_BITS + 4);
 
 (* anyconst *) reg [COORDINATE_BITS-1:0] x, y, z, position, u_low, u_high, v_low, v_high, plane_1, plane_2;
@@ -51,7 +46,8 @@ wire signed [WIDE-1:0] k = {1'b0, position}, k_1 = {1'b0, plane_1}, k_2 = {1'b0,
 
 // The eye and the slope, mirrored once and twice.
 wire one = count >= 1, two = count == 2;
-wire signed [WIDE-1:0] x_1 = one && axis_1 == 0 ? 2 * k_1 - eye_x : eye_x, y_1 = one && axis_1 == 1 ? 2 * k_1 - eye_y : eye_y;
+wire signed [WIDE-1:0] x_1 = one && axis_1 == 0 ? 2 * k_1 - eye_x : eye_x;
+wire signed [WIDE-1:0] y_1 = one && axis_1 == 1 ? 2 * k_1 - eye_y : eye_y;
 wire signed [WIDE-1:0] z_1 = one && axis_1 == 2 ? 2 * k_1 - eye_z : eye_z;
 wire signed [WIDE-1:0] dx_1 = one && axis_1 == 0 ? -view : view, dy_1 = one && axis_1 == 1 ? -wide_dy : wide_dy;
 wire signed [WIDE-1:0] dz_1 = one && axis_1 == 2 ? -wide_dz : wide_dz;
@@ -61,7 +57,8 @@ wire signed [WIDE-1:0] dx_2 = two && axis_2 == 0 ? -dx_1 : dx_1, dy_2 = two && a
 wire signed [WIDE-1:0] dz_2 = two && axis_2 == 2 ? -dz_1 : dz_1;
 
 // The distance of each mirror, and the slope along its axis: the ray must meet it, and the second after the first.
-wire signed [WIDE-1:0] n_1 = k_1 - of_three(axis_1, eye_x, eye_y, eye_z), e_1 = of_three(axis_1, view, wide_dy, wide_dz);
+wire signed [WIDE-1:0] n_1 = k_1 - of_three(axis_1, eye_x, eye_y, eye_z);
+wire signed [WIDE-1:0] e_1 = of_three(axis_1, view, wide_dy, wide_dz);
 wire signed [WIDE-1:0] n_2 = k_2 - of_three(axis_2, x_1, y_1, z_1), e_2 = of_three(axis_2, dx_1, dy_1, dz_1);
 wire met_1 = n_1 * e_1 > 0;
 wire later = magnitude(n_2) * magnitude(e_1) > magnitude(n_1) * magnitude(e_2);
@@ -82,7 +79,8 @@ wire [1:0] on_p = axis == 1 ? 0 : 1, on_q = axis == 2 ? 0 : 2;
 wire signed [WIDE-1:0] low_p = swapped ? low_1 : low_0, high_p = swapped ? high_1 : high_0;
 wire signed [WIDE-1:0] low_q = swapped ? low_0 : low_1, high_q = swapped ? high_0 : high_1;
 wire signed [WIDE-1:0] camera_p = of_three(on_p, eye_x, eye_y, eye_z), camera_q = of_three(on_q, eye_x, eye_y, eye_z);
-wire signed [WIDE-1:0] slope_a = of_three(axis, view, wide_dy, wide_dz), distance = k - of_three(axis, eye_x, eye_y, eye_z);
+wire signed [WIDE-1:0] slope_a = of_three(axis, view, wide_dy, wide_dz);
+wire signed [WIDE-1:0] distance = k - of_three(axis, eye_x, eye_y, eye_z);
 wire signed [WIDE-1:0] way_p = distance * of_three(on_p, view, wide_dy, wide_dz);
 wire signed [WIDE-1:0] way_q = distance * of_three(on_q, view, wide_dy, wide_dz);
 wire signed [WIDE-1:0] walk_low_p = (low_p - camera_p) * slope_a, walk_high_p = (high_p - camera_p) * slope_a;
@@ -91,42 +89,30 @@ wire signed [WIDE-1:0] walk_low_q = (low_q - camera_q) * slope_a, walk_high_q = 
 wire [1:0] last_axis = two ? axis_2 : axis_1;
 wire signed [WIDE-1:0] last_plane = two ? k_2 : k_1;
 wire signed [WIDE-1:0] last_distance = last_plane - of_three(last_axis, eye_x, eye_y, eye_z);
-localparam FOLD_WORD = 7 + 3 * SHIFT_BITS + 6 * FOLD_BITS + 3 * WALK_BITS + 2 + COORDINATE_BITS + 1;
-wire [FOLD_WORD-1:0] fold;
 
-// Words of records, the first field in the highest bits: see `raycaster.rtl.common.records`. Before the second mirror the
-// ray has met the first one, which moves the image of the room as it moves the eye.
+// Words of records, the first field in the highest bits: see `raycaster.rtl.common.records`. Before the second mirror
+// the ray has met the first one, which moves the image of the room as it moves the eye.
 wire [2:0] before = two ? 3'b100 >> axis_1 : 3'b000;
-wire signed [WIDE-1:0] moved_x = two ? x_1 - eye_x : 0, moved_y = two ? y_1 - eye_y : 0, moved_z = two ? z_1 - eye_z : 0;
-ray_fold folder (
-    .clk(clk),
-    .before_word({before, before, moved_x[SHIFT_BITS-1:0], moved_y[SHIFT_BITS-1:0], moved_z[SHIFT_BITS-1:0]}),
-    .last_word({two && together, last_axis, last_distance[COORDINATE_BITS:0]}),
-    .slope_x(dx), .slope_y(dy), .slope_z(dz), .fold_word(fold)
-);
+wire signed [SHIFT_BITS-1:0] moved_x = two ? x_1 - eye_x : 0, moved_y = two ? y_1 - eye_y : 0;
+wire signed [SHIFT_BITS-1:0] moved_z = two ? z_1 - eye_z : 0;
+assign before_word = {before, before, moved_x, moved_y, moved_z};
+assign last_word = {two && together, last_axis, last_distance[COORDINATE_BITS:0]};
+ray_fold folder (.*, .slope_x(dx), .slope_y(dy), .slope_z(dz));
 
-localparam HIT_WORD = 2 + NUMERATOR_BITS + SLOPE_BITS + 1;
-wire [HIT_WORD-1:0] seen_at_once, seen_folded;
+assign {step_way, step_bounds, step_slope, index} = 4'b1111;
+assign facet_word = {1'b1, axis, distance[COORDINATE_BITS:0], way_q[WALK_BITS-1:0], 24'd0};  // a colour has 24 bits
+assign walk_word = {way_p[WALK_BITS-1:0], walk_low_p[WALK_BITS-1:0], walk_high_p[WALK_BITS-1:0],
+                    walk_low_q[WALK_BITS-1:0], walk_high_q[WALK_BITS-1:0]};
+assign signs_word = {dx < 0, dy < 0, dz < 0};
+assign slope_dx = magnitude(view);
+assign slope_dy = magnitude(wide_dy);
+assign slope_dz = magnitude(wide_dz);
+wire [3+NUMERATOR_BITS+SLOPE_BITS-1:0] seen_at_once, seen_folded;
+ray_tester at_once (.*, .hit_word(seen_at_once));
+fold_tester folded (.*, .hit_word(seen_folded));
 wire hit, hit_at_mirror, hit_index;
 wire [NUMERATOR_BITS-1:0] numerator;
 wire [SLOPE_BITS-1:0] denominator;
-wire signed [WIDE-1:0] size_x = magnitude(view), size_y = magnitude(wide_dy), size_z = magnitude(wide_dz);
-
-// A colour has 24 bits.
-wire [28+COORDINATE_BITS+WALK_BITS-1:0] facet = {1'b1, axis, distance[COORDINATE_BITS:0], way_q[WALK_BITS-1:0], 24'd0};
-wire [5*WALK_BITS-1:0] walk = {way_p[WALK_BITS-1:0], walk_low_p[WALK_BITS-1:0], walk_high_p[WALK_BITS-1:0],
-                               walk_low_q[WALK_BITS-1:0], walk_high_q[WALK_BITS-1:0]};
-wire [2:0] signs = {dx < 0, dy < 0, dz < 0};
-ray_tester at_once (
-    .clk(clk), .step_way(1'b1), .step_bounds(1'b1), .step_slope(1'b1), .facet_word(facet), .walk_word(walk),
-    .signs_word(signs), .slope_dx(size_x[SLOPE_BITS-1:0]), .slope_dy(size_y[SLOPE_BITS-1:0]),
-    .slope_dz(size_z[SLOPE_BITS-1:0]), .index(1'b1), .hit_word(seen_at_once)
-);
-fold_tester folded (
-    .clk(clk), .step_way(1'b1), .step_bounds(1'b1), .step_slope(1'b1), .facet_word(facet), .walk_word(walk),
-    .signs_word(signs), .slope_dx(size_x[SLOPE_BITS-1:0]), .slope_dy(size_y[SLOPE_BITS-1:0]),
-    .slope_dz(size_z[SLOPE_BITS-1:0]), .fold_word(fold), .index(1'b1), .hit_word(seen_folded)
-);
 assign {hit, hit_at_mirror, numerator, denominator, hit_index} = one ? seen_folded : seen_at_once;
 
 // The definition: t = n / e, and the whole part and the rest of the way on p and on q from the mirrored eye.
@@ -146,7 +132,8 @@ wire met = two && together && axis == axis_1;
 wire at_mirror = one && last_axis != axis
     && (last_axis == on_p ? base_p == last_plane && !more_p : base_q == last_plane && !more_q);
 wire clear = !one || at_mirror && !met || (last_axis == axis ? beyond(k, 1'b0, slope < 0, last_plane)
-    : last_axis == on_p ? beyond(base_p, more_p, slope_p < 0, last_plane) : beyond(base_q, more_q, slope_q < 0, last_plane));
+    : last_axis == on_p ? beyond(base_p, more_p, slope_p < 0, last_plane)
+    : beyond(base_q, more_q, slope_q < 0, last_plane));
 wire defined = ahead && clear && within(base_p, more_p, slope_p < 0, low_p, high_p)
     && within(base_q, more_q, slope_q < 0, low_q, high_q);
 

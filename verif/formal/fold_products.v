@@ -24,22 +24,19 @@
 // "beam-vga240-s2-u1-r2-m2-c8" = ["ray_fold.shift negated", "ray_fold.back_y_2 or back_z_2",
 //   "ray_fold.before_met_x 0"]
 
-module fold_products #(
-    parameter COORDINATE_BITS = 9, parameter SLOPE_BITS = 9, parameter STEEPEST = 320, parameter REFLECTIONS = 1,
-    parameter WALK_BITS = 19, parameter SHIFT_BITS = 11, parameter FOLD_BITS = 21
-) (
-    input clk, input [COORDINATE_BITS-1:0] x, input [COORDINATE_BITS-1:0] y, input [COORDINATE_BITS-1:0] z,
-    input signed [SHIFT_BITS:0] mirrored_x, input signed [SHIFT_BITS:0] mirrored_y,
-    input signed [SHIFT_BITS:0] mirrored_z, input [2:0] back, input [2:0] met, input at_mirror, input [1:0] axis,
-    input [COORDINATE_BITS-1:0] plane, input signed [SLOPE_BITS:0] dx, input signed [SLOPE_BITS:0] dy,
-    input signed [SLOPE_BITS:0] dz
-);
+module fold_products;
 localparam LAST = (1 << COORDINATE_BITS) - 1, WIDE = SHIFT_BITS + 3, DISTANCE_BITS = COORDINATE_BITS + 1;
 localparam FIELDS = 6, SUM = FOLD_BITS + 2;
 
 // Vectors have x in the lowest bits; words of the design have it in the highest.
-wire [3*WIDE-1:0] eye, mirrored, moved, reflected;
-wire [3*SHIFT_BITS-1:0] shift;
+ray_fold dut (.*);
+(* anyseq *) reg [COORDINATE_BITS-1:0] x, y, z, plane;
+(* anyseq *) reg [1:0] axis;
+(* anyseq *) reg at_mirror;
+assign last_word = {at_mirror, axis, distance[DISTANCE_BITS-1:0]};
+wire [3*WIDE-1:0] eye, moved;
+wire [3*SHIFT_BITS-1:0] shift = {before_shift_z, before_shift_y, before_shift_x};
+wire [2:0] back = {before_back_z, before_back_y, before_back_x}, met = {before_met_z, before_met_y, before_met_x};
 wire [2:0] on_axis = 1 << axis, back_after = back ^ on_axis, met_after = at_mirror ? met | on_axis : on_axis;
 wire signed [WIDE-1:0] k = {1'b0, plane}, distance = k - $signed(eye[axis*WIDE +: WIDE]);
 (* anyconst *) reg [2:0] number;
@@ -57,14 +54,12 @@ function in_reach(input signed [WIDE-1:0] camera, input signed [WIDE-1:0] place,
     end
 endfunction
 assign eye = {{WIDE-COORDINATE_BITS{1'b0}}, z, {WIDE-COORDINATE_BITS{1'b0}}, y, {WIDE-COORDINATE_BITS{1'b0}}, x};
-wire signed [WIDE-1:0] wide_x = mirrored_x, wide_y = mirrored_y, wide_z = mirrored_z;
-assign mirrored = {wide_z, wide_y, wide_x};
 generate
     genvar i;
     for (i = 0; i < 3; i = i + 1) begin: axes
-        wire signed [WIDE-1:0] from = eye[i*WIDE +: WIDE], at = mirrored[i*WIDE +: WIDE], by = at - from;
+        wire signed [SHIFT_BITS-1:0] by = shift[i*SHIFT_BITS +: SHIFT_BITS];
+        wire signed [WIDE-1:0] from = eye[i*WIDE +: WIDE], at = from + by;
         wire signed [WIDE-1:0] after = axis == i ? 2 * k - at : at, by_after = after - from;
-        assign shift[i*SHIFT_BITS +: SHIFT_BITS] = by;
         assign moved[i*WIDE +: WIDE] = by_after;
         always @* begin
             assume (in_reach(from, at, back[i], number - 1));
@@ -75,49 +70,24 @@ generate
     end
 endgenerate
 
-localparam SIDES = 6, FOLD_WORD = SIDES + 3 * SHIFT_BITS + 1 + FIELDS * FOLD_BITS + 3 * WALK_BITS + 2 + DISTANCE_BITS;
-wire [2:0] fold_met, fold_back;
-wire [3*SHIFT_BITS-1:0] fold_shift;
-wire fold_mirror_back;
-wire [FIELDS*FOLD_BITS-1:0] offsets;
-wire [3*WALK_BITS-1:0] borders;
-wire [1:0] fold_axis;
-wire signed [DISTANCE_BITS-1:0] fold_distance;
-ray_fold dut (
-    .clk(clk),
-    .before_word({met[0], met[1], met[2], back[0], back[1], back[2], shift[0 +: SHIFT_BITS],
-        shift[SHIFT_BITS +: SHIFT_BITS], shift[2*SHIFT_BITS +: SHIFT_BITS]}),
-    .last_word({at_mirror, axis, distance[DISTANCE_BITS-1:0]}),
-    .slope_x(dx), .slope_y(dy), .slope_z(dz),
-    .fold_word({fold_met[0], fold_met[1], fold_met[2], fold_back[0], fold_back[1], fold_back[2],
-        fold_shift[0 +: SHIFT_BITS], fold_shift[SHIFT_BITS +: SHIFT_BITS], fold_shift[2*SHIFT_BITS +: SHIFT_BITS],
-        fold_mirror_back, offsets[0 +: FOLD_BITS], offsets[FOLD_BITS +: FOLD_BITS], offsets[2*FOLD_BITS +: FOLD_BITS],
-        offsets[3*FOLD_BITS +: FOLD_BITS], offsets[4*FOLD_BITS +: FOLD_BITS], offsets[5*FOLD_BITS +: FOLD_BITS],
-        borders[0 +: WALK_BITS], borders[WALK_BITS +: WALK_BITS], borders[2*WALK_BITS +: WALK_BITS], fold_axis,
-        fold_distance})
-);
+wire [2:0] fold_met = {fold_met_z, fold_met_y, fold_met_x}, fold_back = {fold_back_z, fold_back_y, fold_back_x};
+wire [3*SHIFT_BITS-1:0] fold_shift = {fold_shift_z, fold_shift_y, fold_shift_x};
+wire [FIELDS*FOLD_BITS-1:0] offsets = {fold_q_z, fold_q_y, fold_q_x, fold_p_z, fold_p_y, fold_p_x};
+wire [3*WALK_BITS-1:0] borders = {fold_border_z, fold_border_y, fold_border_x};
 
 // The fold follows three cycles after the mirror.
 localparam signed [63:0] STEEP = STEEPEST, FARTHEST = STEEP << SHIFT_BITS - 1;
 reg [2:0] age = 0;
-reg [3*WIDE-1:0] moved_1, moved_2, moved_3;
-reg [2:0] back_1, back_2, back_3, met_1, met_2, met_3;
-reg [1:0] axis_1, axis_2, axis_3;
-reg signed [WIDE-1:0] distance_1, distance_2, distance_3;
 reg runs_back_2, runs_back_3;
-wire [3*(SLOPE_BITS+1)-1:0] slope = {dz, dy, dx};
-wire [2:0] down = {dz < 0, dy < 0, dx < 0};
+wire [3*(SLOPE_BITS+1)-1:0] slope = {slope_z, slope_y, slope_x};
+wire [2:0] down = {slope_z < 0, slope_y < 0, slope_x < 0};
 always @(posedge clk) begin
     age <= {age, 1'b1};
-    {moved_3, moved_2, moved_1} <= {moved_2, moved_1, moved};
-    {back_3, back_2, back_1} <= {back_2, back_1, back_after};
-    {met_3, met_2, met_1} <= {met_2, met_1, met_after};
-    {axis_3, axis_2, axis_1} <= {axis_2, axis_1, axis};
-    {distance_3, distance_2, distance_1} <= {distance_2, distance_1, distance};
-    {runs_back_3, runs_back_2} <= {runs_back_2, back_1[axis_1] != down[axis_1]};
+    {runs_back_3, runs_back_2} <= {runs_back_2, $past(back_after)[$past(axis)] != down[$past(axis)]};
 end
 always @* if (age[2]) begin
-    assert (fold_met == met_3 && fold_back == back_3 && fold_axis == axis_3 && fold_distance == distance_3);
+    assert (fold_met == $past(met_after, 3) && fold_back == $past(back_after, 3));
+    assert (fold_axis == $past(axis, 3) && $signed(fold_distance) == $past(distance, 3));
     assert (fold_mirror_back == runs_back_3);
 end
 
@@ -127,28 +97,29 @@ function [1:0] along(input integer field);
 endfunction
 generate
     genvar field;
-    for (i = 0; i < 3; i = i + 1) begin: turns
+    for (i = 0; i < 3; i = i + 1) begin: shifts
         wire signed [SLOPE_BITS:0] component = slope[i*(SLOPE_BITS+1) +: SLOPE_BITS+1];
-        wire signed [DISTANCE_BITS-1:0] narrow = distance_1;
+        wire signed [DISTANCE_BITS-1:0] narrow = $past(distance);
         wire signed [WALK_BITS-1:0] border = narrow * component;
         reg signed [WALK_BITS-1:0] border_2, border_3;
         always @(posedge clk) {border_3, border_2} <= {border_2, border};
         always @* begin
             assume (component >= -STEEP && component <= STEEP);
             if (age[2]) begin
-                assert ($signed(fold_shift[i*SHIFT_BITS +: SHIFT_BITS]) == $signed(moved_3[i*WIDE +: WIDE]));
+                assert ($signed(fold_shift[i*SHIFT_BITS +: SHIFT_BITS]) == $signed($past(moved, 3)[i*WIDE +: WIDE]));
                 assert (borders[i*WALK_BITS +: WALK_BITS] == border_3);
             end
         end
     end
     for (field = 0; field < FIELDS; field = field + 1) begin: fields
         localparam A = field % 3, P = along(field);
-        wire signed [SHIFT_BITS-1:0] shift_a = moved_1[A*WIDE +: SHIFT_BITS], shift_p = moved_1[P*WIDE +: SHIFT_BITS];
+        wire signed [SHIFT_BITS-1:0] shift_a = $past(moved)[A*WIDE +: SHIFT_BITS];
+        wire signed [SHIFT_BITS-1:0] shift_p = $past(moved)[P*WIDE +: SHIFT_BITS];
         wire signed [SLOPE_BITS:0] slope_a = slope[A*(SLOPE_BITS+1) +: SLOPE_BITS+1];
         wire signed [SLOPE_BITS:0] slope_p = slope[P*(SLOPE_BITS+1) +: SLOPE_BITS+1];
         wire signed [FOLD_BITS-1:0] p_by_a = shift_p * slope_a, a_by_p = shift_a * slope_p;
         wire signed [SUM-1:0] wide_p_by_a = p_by_a, wide_a_by_p = a_by_p;
-        wire differ = back_1[A] != back_1[P];
+        wire differ = $past(back_after)[A] != $past(back_after)[P];
         wire signed [SUM-1:0] offset = differ ? wide_p_by_a + wide_a_by_p + 1 : wide_p_by_a - wide_a_by_p;
         reg signed [SUM-1:0] offset_2, offset_3;
         always @(posedge clk) {offset_3, offset_2} <= {offset_2, offset};

@@ -13,31 +13,22 @@
 // quick = ["exact culling=1"]
 // designs = ["engine=seed"]
 // [parameters]
-// SLOPE_BITS = "SLOPE_BITS + 1"
-// WAY_BITS = "WALK_BITS"
 // WALK_BITS = "WIDE_WALK_BITS"
 // GROWTH_BITS = "WIDE_BITS"
 // [faults]
 // "exact-vga240-u4-r12-m1-c8-k1" = ["group_tester.end_least_p edge", "group_tester.end_way_p signed-short",
 //   "group_tester.back inverted", "group_tester.behind or end_back", "group_tester.same_way_1 1"]
 
-module group_safe #(
-    parameter UNITS = 4, parameter UNIT_BITS = 2, parameter RECTANGLES = 12, parameter INDEX_BITS = 4,
-    parameter SLOPE_BITS = 9, parameter DISTANCE_BITS = 10, parameter WAY_BITS = 18, parameter WALK_BITS = 18,
-    parameter GROWTH_BITS = 11
-) (
-    input clk, input [RECTANGLES-1:0] load, input signed [SLOPE_BITS-1:0] column, input signed [SLOPE_BITS-1:0] row,
-    input usable, input [1:0] axis, input signed [DISTANCE_BITS-1:0] distance, input signed [WAY_BITS-1:0] way_q,
-    input [5*GROWTH_BITS-1:0] growth, input [5*WALK_BITS-1:0] start,
-    input [5*WALK_BITS-1:0] at_ray, input [UNIT_BITS-1:0] ray, input [INDEX_BITS-1:0] rectangle
-);
+module group_safe;
 localparam WIDE = WALK_BITS + UNIT_BITS + 2;
 
-wire [RECTANGLES-1:0] may_hit;
-group_tester dut (
-    .clk(clk), .load(load), .column_slope(column), .row_slope(row), .may_hit(may_hit),
-    .facet_word({usable, axis, distance, way_q}), .growth_word(growth), .start_word(start)
-);
+group_tester dut (.*);
+(* anyseq *) reg [5*WALK_BITS-1:0] at_ray;
+(* anyseq *) reg [UNIT_BITS-1:0] ray;
+(* anyseq *) reg [INDEX_BITS-1:0] rectangle;
+wire [1:0] axis = facet_axis;
+wire signed [WALK_BITS-1:0] way_q = $signed(facet_way_q);
+wire signed [DISTANCE_BITS-1:0] distance = facet_distance;
 
 // Five values, the way along p and the low and high bounds on p and on q, at both ends of the group and at `ray`.
 wire signed [WALK_BITS-1:0] first [0:4], there [0:4];
@@ -45,9 +36,9 @@ wire signed [WIDE-1:0] last [0:4];
 generate
     genvar each;
     for (each = 0; each < 5; each = each + 1) begin: walks
-        wire signed [GROWTH_BITS-1:0] a_column = growth[(4-each)*GROWTH_BITS +: GROWTH_BITS];
+        wire signed [GROWTH_BITS-1:0] a_column = growth_word[(4-each)*GROWTH_BITS +: GROWTH_BITS];
         wire signed [WIDE-1:0] reach = a_column * UNITS;
-        assign first[each] = start[(4-each)*WALK_BITS +: WALK_BITS];
+        assign first[each] = start_word[(4-each)*WALK_BITS +: WALK_BITS];
         assign last[each] = first[each] + reach;
         assign there[each] = at_ray[(4-each)*WALK_BITS +: WALK_BITS];
         always @* assume (last[each] >= -(1 <<< WALK_BITS - 1) && last[each] < 1 <<< WALK_BITS - 1);
@@ -61,9 +52,9 @@ generate
         end
     end
 endgenerate
-wire signed [SLOPE_BITS:0] column_there = column + $signed({1'b0, ray});
-wire forward = axis == 1 ? column_there > 0 : axis == 2 ? row > 0 : 1'b1;
-wire back = axis == 1 ? column_there < 0 : axis == 2 ? row < 0 : 1'b0;
+wire signed [SLOPE_BITS+1:0] column_there = column_slope + $signed({1'b0, ray});
+wire forward = axis == 1 ? column_there > 0 : axis == 2 ? row_slope > 0 : 1'b1;
+wire back = axis == 1 ? column_there < 0 : axis == 2 ? row_slope < 0 : 1'b0;
 
 // The cross-multiplied definition: ahead, and within the bounds, which a negative slope swaps.
 wire hits_forward = distance > 0 && forward && there[1] <= there[0] && there[0] <= there[2] && there[3] <= way_q
@@ -72,15 +63,10 @@ wire hits_back = distance < 0 && back && there[2] <= there[0] && there[0] <= the
     && way_q <= there[3];
 
 reg [1:0] hits = 2'b00;
-reg [INDEX_BITS-1:0] rectangle_1, rectangle_2;
-always @(posedge clk) begin
-    hits <= {hits, load[rectangle] && (hits_forward || hits_back)};
-    rectangle_1 <= rectangle;
-    rectangle_2 <= rectangle_1;
-end
+always @(posedge clk) hits <= {hits, load[rectangle] && (hits_forward || hits_back)};
 always @* begin
     assume (axis < 3 && ray < UNITS && rectangle < RECTANGLES);
-    if (hits[1]) assert (may_hit[rectangle_2]);
+    if (hits[1]) assert (may_hit[$past(rectangle, 2)]);
 end
 
 always @* cover (hits[1]);

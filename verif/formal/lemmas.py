@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import ast
 import importlib
+import re
 import subprocess
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
@@ -30,20 +32,16 @@ class Lemma:
     Attributes:
         label: name of the lemma.
         claim: the claim in a few words.
-        variables: names of the variables, separated by spaces.
         given: the hypotheses.
         then: the conclusion.
         integers: True if the variables are integers; else they are real numbers, which include integers and rationals.
-        truths: names of variables that are true or false.
     """
 
     label: str
     claim: str
-    variables: str
     given: tuple[str, ...]
     then: str
     integers: bool = False
-    truths: str = ""
 
     name: ClassVar[str] = "lemmas"
     modules: ClassVar[tuple[str, ...]] = ()
@@ -51,14 +49,22 @@ class Lemma:
     induction: ClassVar[int] = 0
     small: ClassVar[bool] = True
 
+    def sorts(self) -> dict[str, str]:
+        """Return the variables and their sorts in SMT-LIB; an operand of `and`, `or` and `not` is true or false."""
+        nodes = [node for text in (*self.given, self.then) for node in ast.walk(ast.parse(text, mode="eval"))]
+        operands = [node.values for node in nodes if isinstance(node, ast.BoolOp)]
+        operands += [[node.operand] for node in nodes if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not)]
+        truths = {one.id for several in operands for one in several if isinstance(one, ast.Name)}
+        sort = "Int" if self.integers else "Real"
+        return {node.id: "Bool" if node.id in truths else sort for node in nodes if isinstance(node, ast.Name)}
+
     def smt(self) -> str:
         """Return SMT-LIB that is unsatisfiable if the lemma holds."""
-        sort = "Int" if self.integers else "Real"
-        names = {name: sort for name in self.variables.split()} | {name: "Bool" for name in self.truths.split()}
+        sorts = self.sorts()
         lines = ["(set-logic ALL)", "(set-option :produce-models true)"]
-        lines += [f"(declare-const {name} {sort})" for name, sort in names.items()]
+        lines += [f"(declare-const {name} {sort})" for name, sort in sorts.items()]
         lines += [f"(assert {self._translated(text)})" for text in self.given]
-        lines += [f"(assert (not {self._translated(self.then)}))", "(check-sat)", f"(get-value ({' '.join(names)}))"]
+        lines += [f"(assert (not {self._translated(self.then)}))", "(check-sat)", f"(get-value ({' '.join(sorts)}))"]
         return "\n".join(lines) + "\n"
 
     def _translated(self, text: str) -> str:
@@ -143,229 +149,145 @@ def _cvc5(path: Path, timeout: float) -> tuple[str, str]:
 
 # E is the eye, D the slope, t the ray's parameter, P = E + D t; k is a plane, and t = n/e; lo and hi, near and far are
 # bounds. On an axis that is turned around, coordinates are complemented: ~x = -x - 1.
-LEMMAS: tuple[Lemma, ...] = (
-    Lemma(
-        "bounds", "lo <= E + D n/e <= hi is equivalent to (lo - E) e <= D n <= (hi - E) e",
-        "lo hi E D n e t", ("e > 0", "t*e == n"),
-        "(lo <= E + D*t <= hi) == ((lo - E)*e <= D*n <= (hi - E)*e)",
-    ),
-    Lemma(
-        "plane-ahead", "a plane is ahead, t > 0, if n and e have the same sign; with e > 0, if n > 0",
-        "n e t", ("e != 0", "t*e == n"),
-        "((t > 0) == (n*e > 0)) and (not e > 0 or (t > 0) == (n > 0))",
-    ),
-    Lemma(
-        "turned-plane", "with D[a] < 0, complemented: n = ~k - ~E[a] and e = -D[a] give the same t",
-        "k E D t", ("D < 0", "E + D*t == k"),
-        "t*(-D) == (-k - 1) - (-E - 1)",
-    ),
-    Lemma(
-        "turned-bounds", "with D[u] = -d, complemented: the bounds are swapped, and P = E + D t becomes ~E + d t",
-        "lo hi E d P t", ("P == E + -d*t",),
-        "(lo <= P <= hi) == (-hi - 1 <= (-E - 1) + d*t <= -lo - 1)",
-    ),
-    Lemma(
-        "passed-bound", "every point is past a near bound behind the eye, and none is within a far bound behind it",
-        "near far n e d", ("n > 0", "e > 0", "d >= 0"),
-        "(near >= 0 or near*e <= d*n) and (far >= 0 or not d*n <= far*e)",
-    ),
-    Lemma(
-        "nearer", "n1/e1 < n2/e2 is equivalent to n1 e2 < n2 e1, and so are their equalities",
-        "n1 e1 t1 n2 e2 t2", ("e1 > 0", "e2 > 0", "t1*e1 == n1", "t2*e2 == n2"),
-        "((t1 < t2) == (n1*e2 < n2*e1)) and ((t1 == t2) == (n1*e2 == n2*e1))",
-    ),
-    Lemma(
-        "kept-is-nearest", "a hit that replaces the kept one is nearer than all hits that were no nearer than that",
-        "n1 e1 t1 n2 e2 t2 n3 e3 t3",
-        ("e1 > 0", "e2 > 0", "e3 > 0", "t1*e1 == n1", "t2*e2 == n2", "t3*e3 == n3", "n1*e2 < n2*e1", "n2*e3 <= n3*e2"),
-        "n1*e3 < n3*e1",
-    ),
-    Lemma(
-        "depth", "the nearer of two hits along x has the smaller t, if D[x] is not 0",
-        "D t1 t2", ("D != 0", "t1 >= 0", "t2 >= 0"),
-        "(D*t1*(D*t1) < D*t2*(D*t2)) == (t1 < t2)",
-    ),
-    Lemma(
-        "slope-ratios", "a slope c times as long meets each point at t/c, in the same order",
-        "E D c t1 s1 t2 s2", ("c > 0", "s1*c == t1", "s2*c == t2"),
-        "E + D*c*s1 == E + D*t1 and (s1 < s2) == (t1 < t2)",
-    ),
-    Lemma(
-        "mirrored-eye", "reflected at k = E + D m: after s more, the ray is where that from 2k - E with -D is at m + s",
-        "E D k m s", ("k == E + D*m",),
-        "k + -D*s == (2*k - E) + -D*(m + s)",
-    ),
-    Lemma(
-        "mirrored-distance", "the mirror is as far from the mirrored eye as from the eye, on the other side",
-        "E k", (),
-        "k - (2*k - E) == -(k - E)",
-    ),
-    Lemma(
-        "beyond-on-the-same-axis", "planes n and m on one axis: t = n/e is beyond m/e if n > m",
-        "n m e t s", ("e > 0", "t*e == n", "s*e == m"),
-        "((t > s) == (n > m)) and ((t == s) == (n == m))",
-    ),
-    Lemma(
-        "beyond-on-another-axis", "beyond a mirror m ahead on u, t > m/d, if d n > m e; in its plane if equal",
-        "n e t m d s", ("e > 0", "d > 0", "t*e == n", "s*d == m"),
-        "((t > s) == (d*n > m*e)) and ((t == s) == (d*n == m*e))",
-    ),
-    Lemma(
-        "order-kept", "two distances compare as their products with the same e > 0",
-        "a b e", ("e > 0",),
-        "((a < b) == (a*e < b*e)) and ((a == b) == (a*e == b*e))",
-    ),
-    Lemma(
-        "corner-rule", "t > s, or t = s on an axis not met there, is m e <= d n, except equality on a met axis",
-        "n e t m d s", ("e > 0", "d > 0", "t*e == n", "s*d == m"),
-        "(t > s or (t == s and not met)) == (m*e <= d*n and not (met and m*e == d*n))",
-        truths="met",
-    ),
-    Lemma(
-        "eye-in-range", "if -w r <= E <= w (r + 1) after r mirrors, no plane is further than w (r + 1); so for r + 1",
-        "E k w r", ("r >= 0", "w >= 0", "-w*r <= E <= w*(r + 1)", "0 <= k <= w"),
-        "-w*(r + 1) <= 2*k - E <= w*(r + 2) and -w*(r + 1) <= k - E <= w*(r + 1)",
-    ),
-    Lemma(
-        "product-fits", "the product of one factor below A and one below B is below A B",
-        "x y A B", ("0 <= x < A", "0 <= y < B"),
-        "0 <= x*y < A*B",
-        integers=True,
-    ),
-    Lemma(
-        "product-in-range", "the product of factors no further from 0 than A and B is no further from 0 than A B",
-        "x y A B", ("-A <= x <= A", "-B <= y <= B"),
-        "-A*B <= x*y <= A*B",
-    ),
-    Lemma(
-        "slope-in-range", "a slope of parts up to M in magnitude is at most M times the sum of its factors",
-        "f r u V c h C H M", ("V >= 0", "-C <= c <= C", "-H <= h <= H", "-M <= f <= M", "-M <= r <= M", "-M <= u <= M"),
-        "-M*(V + C + H) <= V*f + c*r + h*u <= M*(V + C + H)",
-    ),
-    Lemma(
-        "next-column", "the product at the next column is the product plus its growth, R times the distance",
-        "n D R now next", ("now == n*D", "next == now + n*R"),
-        "next == n*(D + R)",
-    ),
-    Lemma(
-        "fold-at-a-mirror", "a mirror at n turns x - E = s (X - E) + T into 2 n - (x - E), with -s and 2 n - T",
-        "X E s T n", ("s*s == 1",),
-        "2*n - (s*(X - E) + T) == -s*(X - E) + (2*n - T)",
-    ),
-    Lemma(
-        "fold-at-two-on-an-axis", "mirrors at the distances m and then n on one axis move the room by 2 (n - m)",
-        "x m n", (),
-        "2*n - (2*m - x) == x + 2*(n - m)",
-    ),
-    Lemma(
-        "folded-way", "if s t D[a] + T[a] = n, D[a] (z t D[p] + T[p]) = s z n D[p] + T[p] D[a] - s z T[a] D[p]",
-        "s z t Da Dp Ta Tp n", ("s*s == 1", "s*t*Da + Ta == n"),
-        "Da*(z*t*Dp + Tp) == s*z*n*Dp + (Tp*Da - s*z*Ta*Dp)",
-    ),
-    Lemma(
-        "folded-bounds", "E = C + T: lo <= E + D n/e <= hi is (lo - C) e <= D n + T e <= (hi - C) e, reversed if e < 0",
-        "lo hi C T D n e t", ("e != 0", "t*e == n"),
-        "(lo <= C + T + D*t <= hi) == ((e > 0 and (lo - C)*e <= D*n + T*e <= (hi - C)*e)"
-        " or (e < 0 and (hi - C)*e <= D*n + T*e <= (lo - C)*e))",
-    ),
-    Lemma(
-        "ahead-of-mirror", "a point beyond a mirror that is ahead, m/d > 0, or in its plane, is ahead",
-        "n e m d", ("e > 0", "d > 0", "m > 0", "m*e <= d*n"),
-        "n > 0",
-    ),
-    Lemma(
-        "complement-adds-one", "a + b + 1 = a - ~b, and ~w + 1 = -w",
-        "a b", (),
-        "a + b + 1 == a - (-b - 1) and (-b - 1) + 1 == -b",
-    ),
-    Lemma(
-        "division", "with w = e q + r, 0 <= r < e: k e <= w is k <= q; k e < w and w <= k e depend on r if k = q",
-        "w e q r k", ("w == e*q + r", "0 <= r < e"),
-        "((k*e <= w) == (k <= q)) and ((k*e < w) == (k < q or (k == q and r > 0)))"
-        " and ((w <= k*e) == (q < k or (q == k and r == 0)))",
-        integers=True,
-    ),
-    Lemma(
-        "division-step", "for the next bit b of the dividend, 2 r + b is the new remainder, less e if it is at least e",
-        "p e q r b d s", ("p == e*q + r", "0 <= r < e", "0 <= b <= 1", "0 <= d <= 1", "(d == 1) == (2*r + b >= e)",
-                          "s == 2*r + b - d*e"),
-        "2*p + b == e*(2*q + d) + s and 0 <= s < e",
-        integers=True,
-    ),
-    Lemma(
-        "cell-number", "floor(w/(e c)) = floor(floor(w/e)/c), so P = w/e is in the same cell as its whole part",
-        "w e q r c i j", ("w == e*q + r", "0 <= r < e", "q == c*i + j", "0 <= j < c"),
-        "e*c*i <= w < e*c*(i + 1)",
-        integers=True,
-    ),
-    Lemma(
-        "cell-parity", "i + j is odd if exactly one of i and j is",
-        "i j f g a b h c",
-        ("i == 2*f + a", "j == 2*g + b", "i + j == 2*h + c", "0 <= a <= 1", "0 <= b <= 1", "0 <= c <= 1"),
-        "(c == 1) == (a != b)",
-        integers=True,
-    ),
-    Lemma(
-        "digits-appended", "appending digits of value m to n gives b n + m; a product p with d becomes b p + m d",
-        "n d p b m", ("p == n*d",),
-        "(b*n + m)*d == b*p + m*d",
-    ),
-    Lemma(
-        "quotient-truncated", "with w = e q + r, 0 <= r < e, the quotient q is less than 1 below w/e",
-        "w e q r x", ("w == e*q + r", "0 <= r < e", "x*e == w"),
-        "0 <= x - q < 1",
-    ),
-    Lemma(
-        "quotient-nearest", "with 2 w + e = 2 e q + r, 0 <= r < 2 e, the quotient q is at most one half from w/e",
-        "w e q r x", ("2*w + e == 2*e*q + r", "0 <= r < 2*e", "x*e == w"),
-        "-1 <= 2*(x - q) < 1",
-    ),
-    Lemma(
-        "way-of-magnitudes", "if n and e have the same sign s, D n/e is the quotient of the magnitudes, with D's sign",
-        "A n e t s d", ("s*s == 1", "d*d == 1", "e > 0", "t*(s*e) == s*n"),
-        "(d*A)*t*e == d*(A*n)",
-    ),
-    Lemma(
-        "point-error", "an origin off by c, along a by b, and a quotient off by q: the point is off by c + b A/e + q",
-        "O o I i D A k e X Y P p b c q",
-        ("e > 0", "X*e == D*(k - I)", "Y*e == D*(k - i)", "P == O + X", "-c <= o - O <= c", "-A*b <= D*(I - i) <= A*b",
-         "-q <= p - (o + Y) <= q"),
-        "-(c*e + A*b + q*e) <= (p - P)*e <= c*e + A*b + q*e",
-    ),
-    Lemma(
-        "between", "a linear value that is less than another at both ends of a row is less between them",
-        "x y a g b h N i",
-        ("0 <= i <= N", "a < b", "a + N*g < b + N*h", "x == a + i*g", "y == b + i*h"),
-        "x < y",
-    ),
-    Lemma(
-        "shares", "if m quarters are mirrored, a weight is the sum of what the mirror keeps and what it passes on",
-        "w v m s T U", ("4*T == (4 - m)*s + m*U", "4*v == w*m"),
-        "w*T == (w - v)*s + v*U",
-    ),
-    Lemma(
-        "product-in-parts", "a product is the product with a factor's low part, plus c times that with its high part",
-        "n e l h c", ("e == l + c*h",),
-        "n*e == n*l + c*(n*h)",
-    ),
-    Lemma(
-        "from-the-light", "S = (E - L) e + D n leads from the light L to the point E + D n/e, which it meets at 1/e",
-        "E L D S n e t s", ("t*e == n", "s*e == 1", "S == (E - L)*e + D*n"),
-        "L + S*s == E + D*t",
-    ),
-    Lemma(
-        "before-the-point", "n/d is before 1/e if n e < d",
-        "n d e t s", ("d > 0", "e > 0", "t*d == n", "s*e == 1"),
-        "(t < s) == (n*e < d)",
-    ),
-    Lemma(
-        "lit-side", "eye and light are strictly on the same side of the plane k if the ray passes L before k",
-        "E L D t k", ("t > 0", "D != 0", "E + D*t == k"),
-        "((E - k)*(L - k) > 0) == ((D > 0 and L < k) or (D < 0 and k < L))",
-    ),
-    Lemma(
-        "shadow-slope-in-range", "with point and light in the world, 0 to w, the slope S = (P - L) e is within w e",
-        "P L S e w", ("e > 0", "0 <= P <= w", "0 <= L <= w", "S == (P - L)*e"),
-        "-w*e <= S <= w*e",
-    ),
-)  # fmt: skip
+TEXT = """\
+bounds: lo <= E + D n/e <= hi is equivalent to (lo - E) e <= D n <= (hi - E) e
+  given e > 0, t*e == n
+  then (lo <= E + D*t <= hi) == ((lo - E)*e <= D*n <= (hi - E)*e)
+plane-ahead: a plane is ahead, t > 0, if n and e have the same sign; with e > 0, if n > 0
+  given e != 0, t*e == n
+  then ((t > 0) == (n*e > 0)) and (not e > 0 or (t > 0) == (n > 0))
+turned-plane: with D[a] < 0, complemented: n = ~k - ~E[a] and e = -D[a] give the same t
+  given D < 0, E + D*t == k
+  then t*(-D) == (-k - 1) - (-E - 1)
+turned-bounds: with D[u] = -d, complemented: the bounds are swapped, and P = E + D t becomes ~E + d t
+  given P == E + -d*t
+  then (lo <= P <= hi) == (-hi - 1 <= (-E - 1) + d*t <= -lo - 1)
+passed-bound: every point is past a near bound behind the eye, and none is within a far bound behind it
+  given n > 0, e > 0, d >= 0
+  then (near >= 0 or near*e <= d*n) and (far >= 0 or not d*n <= far*e)
+nearer: n1/e1 < n2/e2 is equivalent to n1 e2 < n2 e1, and so are their equalities
+  given e1 > 0, e2 > 0, t1*e1 == n1, t2*e2 == n2
+  then ((t1 < t2) == (n1*e2 < n2*e1)) and ((t1 == t2) == (n1*e2 == n2*e1))
+kept-is-nearest: a hit that replaces the kept one is nearer than all hits that were no nearer than that
+  given e1 > 0, e2 > 0, e3 > 0, t1*e1 == n1, t2*e2 == n2, t3*e3 == n3, n1*e2 < n2*e1, n2*e3 <= n3*e2
+  then n1*e3 < n3*e1
+depth: the nearer of two hits along x has the smaller t, if D[x] is not 0
+  given D != 0, t1 >= 0, t2 >= 0
+  then (D*t1*(D*t1) < D*t2*(D*t2)) == (t1 < t2)
+slope-ratios: a slope c times as long meets each point at t/c, in the same order
+  given c > 0, s1*c == t1, s2*c == t2
+  then E + D*c*s1 == E + D*t1 and (s1 < s2) == (t1 < t2)
+mirrored-eye: reflected at k = E + D m: after s more, the ray is where that from 2k - E with -D is at m + s
+  given k == E + D*m
+  then k + -D*s == (2*k - E) + -D*(m + s)
+mirrored-distance: the mirror is as far from the mirrored eye as from the eye, on the other side
+  then k - (2*k - E) == -(k - E)
+beyond-on-the-same-axis: planes n and m on one axis: t = n/e is beyond m/e if n > m
+  given e > 0, t*e == n, s*e == m
+  then ((t > s) == (n > m)) and ((t == s) == (n == m))
+beyond-on-another-axis: beyond a mirror m ahead on u, t > m/d, if d n > m e; in its plane if equal
+  given e > 0, d > 0, t*e == n, s*d == m
+  then ((t > s) == (d*n > m*e)) and ((t == s) == (d*n == m*e))
+order-kept: two distances compare as their products with the same e > 0
+  given e > 0
+  then ((a < b) == (a*e < b*e)) and ((a == b) == (a*e == b*e))
+corner-rule: t > s, or t = s on an axis not met there, is m e <= d n, except equality on a met axis
+  given e > 0, d > 0, t*e == n, s*d == m
+  then (t > s or (t == s and not met)) == (m*e <= d*n and not (met and m*e == d*n))
+eye-in-range: if -w r <= E <= w (r + 1) after r mirrors, no plane is further than w (r + 1); so for r + 1
+  given r >= 0, w >= 0, -w*r <= E <= w*(r + 1), 0 <= k <= w
+  then -w*(r + 1) <= 2*k - E <= w*(r + 2) and -w*(r + 1) <= k - E <= w*(r + 1)
+product-fits: the product of one factor below A and one below B is below A B
+  integers, given 0 <= x < A, 0 <= y < B
+  then 0 <= x*y < A*B
+product-in-range: the product of factors no further from 0 than A and B is no further from 0 than A B
+  given -A <= x <= A, -B <= y <= B
+  then -A*B <= x*y <= A*B
+slope-in-range: a slope of parts up to M in magnitude is at most M times the sum of its factors
+  given V >= 0, -C <= c <= C, -H <= h <= H, -M <= f <= M, -M <= r <= M, -M <= u <= M
+  then -M*(V + C + H) <= V*f + c*r + h*u <= M*(V + C + H)
+next-column: the product at the next column is the product plus its growth, R times the distance
+  given now == n*D, next == now + n*R
+  then next == n*(D + R)
+fold-at-a-mirror: a mirror at n turns x - E = s (X - E) + T into 2 n - (x - E), with -s and 2 n - T
+  given s*s == 1
+  then 2*n - (s*(X - E) + T) == -s*(X - E) + (2*n - T)
+fold-at-two-on-an-axis: mirrors at the distances m and then n on one axis move the room by 2 (n - m)
+  then 2*n - (2*m - x) == x + 2*(n - m)
+folded-way: if s t D[a] + T[a] = n, D[a] (z t D[p] + T[p]) = s z n D[p] + T[p] D[a] - s z T[a] D[p]
+  given s*s == 1, s*t*Da + Ta == n
+  then Da*(z*t*Dp + Tp) == s*z*n*Dp + (Tp*Da - s*z*Ta*Dp)
+folded-bounds: E = C + T: lo <= E + D n/e <= hi is (lo - C) e <= D n + T e <= (hi - C) e, reversed if e < 0
+  given e != 0, t*e == n
+  then (lo <= C + T + D*t <= hi) == ((e > 0 and (lo - C)*e <= D*n + T*e <= (hi - C)*e) or (e < 0
+    and (hi - C)*e <= D*n + T*e <= (lo - C)*e))
+ahead-of-mirror: a point beyond a mirror that is ahead, m/d > 0, or in its plane, is ahead
+  given e > 0, d > 0, m > 0, m*e <= d*n
+  then n > 0
+complement-adds-one: a + b + 1 = a - ~b, and ~w + 1 = -w
+  then a + b + 1 == a - (-b - 1) and (-b - 1) + 1 == -b
+division: with w = e q + r, 0 <= r < e: k e <= w is k <= q; k e < w and w <= k e depend on r if k = q
+  integers, given w == e*q + r, 0 <= r < e
+  then ((k*e <= w) == (k <= q)) and ((k*e < w) == (k < q or (k == q and r > 0))) and ((w <= k*e) == (q < k
+    or (q == k and r == 0)))
+division-step: for the next bit b of the dividend, 2 r + b is the new remainder, less e if it is at least e
+  integers, given p == e*q + r, 0 <= r < e, 0 <= b <= 1, 0 <= d <= 1, (d == 1) == (2*r + b >= e), s == 2*r + b - d*e
+  then 2*p + b == e*(2*q + d) + s and 0 <= s < e
+cell-number: floor(w/(e c)) = floor(floor(w/e)/c), so P = w/e is in the same cell as its whole part
+  integers, given w == e*q + r, 0 <= r < e, q == c*i + j, 0 <= j < c
+  then e*c*i <= w < e*c*(i + 1)
+cell-parity: i + j is odd if exactly one of i and j is
+  integers, given i == 2*f + a, j == 2*g + b, i + j == 2*h + c, 0 <= a <= 1, 0 <= b <= 1, 0 <= c <= 1
+  then (c == 1) == (a != b)
+digits-appended: appending digits of value m to n gives b n + m; a product p with d becomes b p + m d
+  given p == n*d
+  then (b*n + m)*d == b*p + m*d
+quotient-truncated: with w = e q + r, 0 <= r < e, the quotient q is less than 1 below w/e
+  given w == e*q + r, 0 <= r < e, x*e == w
+  then 0 <= x - q < 1
+quotient-nearest: with 2 w + e = 2 e q + r, 0 <= r < 2 e, the quotient q is at most one half from w/e
+  given 2*w + e == 2*e*q + r, 0 <= r < 2*e, x*e == w
+  then -1 <= 2*(x - q) < 1
+way-of-magnitudes: if n and e have the same sign s, D n/e is the quotient of the magnitudes, with D's sign
+  given s*s == 1, d*d == 1, e > 0, t*(s*e) == s*n
+  then (d*A)*t*e == d*(A*n)
+point-error: an origin off by c, along a by b, and a quotient off by q: the point is off by c + b A/e + q
+  given e > 0, X*e == D*(k - I), Y*e == D*(k - i), P == O + X, -c <= o - O <= c, -A*b <= D*(I - i) <= A*b,
+    -q <= p - (o + Y) <= q
+  then -(c*e + A*b + q*e) <= (p - P)*e <= c*e + A*b + q*e
+between: a linear value that is less than another at both ends of a row is less between them
+  given 0 <= i <= N, a < b, a + N*g < b + N*h, x == a + i*g, y == b + i*h
+  then x < y
+shares: if m quarters are mirrored, a weight is the sum of what the mirror keeps and what it passes on
+  given 4*T == (4 - m)*s + m*U, 4*v == w*m
+  then w*T == (w - v)*s + v*U
+product-in-parts: a product is the product with a factor's low part, plus c times that with its high part
+  given e == l + c*h
+  then n*e == n*l + c*(n*h)
+from-the-light: S = (E - L) e + D n leads from the light L to the point E + D n/e, which it meets at 1/e
+  given t*e == n, s*e == 1, S == (E - L)*e + D*n
+  then L + S*s == E + D*t
+before-the-point: n/d is before 1/e if n e < d
+  given d > 0, e > 0, t*d == n, s*e == 1
+  then (t < s) == (n*e < d)
+lit-side: eye and light are strictly on the same side of the plane k if the ray passes L before k
+  given t > 0, D != 0, E + D*t == k
+  then ((E - k)*(L - k) > 0) == ((D > 0 and L < k) or (D < 0 and k < L))
+shadow-slope-in-range: with point and light in the world, 0 to w, the slope S = (P - L) e is within w e
+  given e > 0, 0 <= P <= w, 0 <= L <= w, S == (P - L)*e
+  then -w*e <= S <= w*e
+"""
+"""The lemmas: a name and the claim, then the hypotheses, separated by commas, and the conclusion."""
+
+
+def _lemmas(text: str) -> Iterator[Lemma]:
+    for entry in re.split(r"\n(?=\S)", text.strip()):
+        title, body = re.sub(r"\n +", "\n", entry).split("\n", 1)
+        label, _, claim = title.partition(": ")
+        given, _, then = body.replace("\n", " ").partition("then ")
+        integers = given.startswith("integers")
+        given = given.removeprefix("integers, ").removeprefix("given ").strip()
+        yield Lemma(label, claim, tuple(given.split(", ")) if given else (), then, integers)
+
+
+LEMMAS = tuple(_lemmas(TEXT))

@@ -10,42 +10,28 @@
 // induction = 1
 // quick = ["engine=seed", "tiny two"]
 // designs = ["reflections=2", "units=16 rectangles=4"]
-// [parameters]
-// WRITE_BITS = "OFFSET_BITS"
-// READ_BITS = "GROUP_BITS"
-// ADDRESS_BITS = "(2 * GROUPS - 1).bit_length()"
 // [faults]
 // "tiny48-u2-r2-m1-f0t-d3-c8" = ["line_buffer.read_address short", "line_buffer.line_buf_sel unless write"]
 
-module line_sections #(
-    parameter GROUPS = 10, parameter WRITE_BITS = 4, parameter READ_BITS = 4, parameter ADDRESS_BITS = 5,
-    parameter PIXEL_BITS = 24
-) (
-    input clk, input write, input line_buf_sel, input [WRITE_BITS-1:0] write_offset, input [PIXEL_BITS-1:0] pixel_in,
-    input [READ_BITS-1:0] read_offset
-);
-line_buffer dut (
-    .clk(clk), .write(write), .line_buf_sel(line_buf_sel), .write_offset(write_offset), .pixel_in(pixel_in),
-    .read_offset(read_offset), .pixel_out()
-);
+module line_sections;
+line_buffer dut (.*);
 
 always @* begin
     assume (read_offset < GROUPS);
     if (write) assume (write_offset < GROUPS);
 end
 
-(* hierconn *) wire [ADDRESS_BITS-1:0] \dut.write_address , \dut.read_address ;
 always @* begin
-    assert (\dut.read_address < 2 * GROUPS);
+    assert (dut.read_address < 2 * GROUPS);
     if (write) begin
-        assert (\dut.write_address < 2 * GROUPS);
-        assert (\dut.write_address != \dut.read_address );
+        assert (dut.write_address < 2 * GROUPS);
+        assert (dut.write_address != dut.read_address);
     end
 end
 
 // The halves are separate: every offset of either half has its own address.
 always @* begin
-    assert (\dut.write_address == (line_buf_sel ? write_offset + GROUPS : write_offset) || !write);
-    assert (\dut.read_address == (line_buf_sel ? read_offset : read_offset + GROUPS));
+    assert (dut.write_address == (line_buf_sel ? write_offset + GROUPS : write_offset) || !write);
+    assert (dut.read_address == (line_buf_sel ? read_offset : read_offset + GROUPS));
 end
 endmodule

@@ -21,23 +21,13 @@
 // "beam-vga240-s2-u1-r2-m1-c8-turn" = ["line_starter.ages[3] 0", "line_starter.y_product signed-short",
 //   "line_starter.factor negated", "line_starter.start_sweep as ages[1]"]
 
-module line_start #(
-    parameter PIXELS = 1, parameter CAMERA_BITS = 117, parameter BASIS_BITS = 10, parameter FACTOR_BITS = 9,
-    parameter SLOPE_BITS = 19, parameter VIEW_DISTANCE = 100, parameter CENTRE = 160, parameter AIM_LATENCY = 5,
-    parameter LATENCY = 5
-) (
-    input clk, input reset, input start_line, input signed [FACTOR_BITS-1:0] row_slope, input loaded,
-    input [CAMERA_BITS-1:0] camera
-);
-wire start_sweep;
-wire [PIXELS-1:0] enter;
-wire [3*SLOPE_BITS-1:0] aim;
+module line_start;
+wire [3*SLOPE_BITS-1:0] aim = {aim_z, aim_y, aim_x};
 
 // Cycles since the start of the line and of a sweep, up to the latency; sweeps that have ended in the line.
-reg ready = 1'b0, was_entered;
+reg ready = 1'b0;
 reg [2:0] age, sweep_age;
 reg [1:0] ended;
-reg [CAMERA_BITS-1:0] last_camera;
 reg signed [FACTOR_BITS-1:0] height;
 wire ends = loaded && ended < PIXELS;
 always @(posedge clk) begin
@@ -45,16 +35,14 @@ always @(posedge clk) begin
     age <= reset ? 0 : start_line ? 1 : age == 0 || age == AIM_LATENCY ? age : age + 1;
     sweep_age <= start_sweep ? 1 : sweep_age == LATENCY ? sweep_age : sweep_age + 1;
     ended <= reset ? PIXELS : start_line ? 0 : ended + ends;
-    was_entered <= ends;
-    last_camera <= camera;
     if (age == 3) height <= row_slope;
 end
 always @* begin
     assume (ready || reset);
     if (start_line) assume (age == 0 || age == AIM_LATENCY);
-    if (age != 0) assume (camera == last_camera);
-    if (loaded) assume (!start_line && (age == 0 || age == AIM_LATENCY) && sweep_age == LATENCY && !was_entered);
-    if (was_entered) assume (!start_line);
+    if (age != 0) assume ($stable(camera_word));
+    if (loaded) assume (!start_line && (age == 0 || age == AIM_LATENCY) && sweep_age == LATENCY && !$past(ends));
+    if ($past(ends)) assume (!start_line);
     if (ready) begin
         assert (age <= AIM_LATENCY && ended <= PIXELS);
         assert (start_sweep == (age == 2 || ends));
@@ -67,31 +55,26 @@ end
 (* anyconst *) reg signed [FACTOR_BITS-1:0] view, first_column;
 always @* assume (view == VIEW_DISTANCE && first_column == -CENTRE);
 wire [2:0] to_end = {ended == 2, ended == 1, ended == 0};
-line_starter dut (
-    .clk(clk), .reset(reset), .start_line(start_line), .row_slope(row_slope), .loaded(loaded),
-    .start_sweep(start_sweep), .enter(enter), .camera_word(camera), .aim_x(aim[0 +: SLOPE_BITS]),
-    .aim_y(aim[SLOPE_BITS +: SLOPE_BITS]), .aim_z(aim[2*SLOPE_BITS +: SLOPE_BITS])
-);
-(* hierconn *) wire [PIXELS-1:0] \dut.sweeps ;
-always @* if (ready) assert (\dut.sweeps == to_end[PIXELS-1:0]);
+line_starter dut (.*);
+always @* if (ready) assert (dut.sweeps == to_end[PIXELS-1:0]);
 generate
     genvar axis;
     for (axis = 0; axis < 3; axis = axis + 1) begin: along
-        wire signed [BASIS_BITS-1:0] forward = camera[(8-axis)*BASIS_BITS +: BASIS_BITS];
-        wire signed [BASIS_BITS-1:0] right = camera[(5-axis)*BASIS_BITS +: BASIS_BITS];
-        wire signed [BASIS_BITS-1:0] up = camera[(2-axis)*BASIS_BITS +: BASIS_BITS];
+        wire signed [BASIS_BITS-1:0] forward = camera_word[(8-axis)*BASIS_BITS +: BASIS_BITS];
+        wire signed [BASIS_BITS-1:0] right = camera_word[(5-axis)*BASIS_BITS +: BASIS_BITS];
+        wire signed [BASIS_BITS-1:0] up = camera_word[(2-axis)*BASIS_BITS +: BASIS_BITS];
         wire signed [SLOPE_BITS-1:0] ahead = view * forward, aside = first_column * right, upward = height * up;
         wire signed [SLOPE_BITS-1:0] rising = row_slope * up;
         wire signed [SLOPE_BITS-1:0] sum = ahead + aside + upward, second = sum + right;
         wire signed [SLOPE_BITS-1:0] step = PIXELS > 1 ? right + right : right;
         wire signed [SLOPE_BITS-1:0] seen = aim[axis*SLOPE_BITS +: SLOPE_BITS];
-        always @* if (ready && !was_entered) begin
+        always @* if (ready && !$past(ends)) begin
             if (age == 2) assert (seen == 0);
             if (age == 3) assert (seen == ahead);
             if (age == 4) assert (seen == ahead + aside);
             if (age == AIM_LATENCY) assert (seen == (ended == 0 ? sum : ended < PIXELS ? second : step));
         end
-        always @* if (ready && was_entered) assert (age == 0 || age == AIM_LATENCY);
+        always @* if (ready && $past(ends)) assert (age == 0 || age == AIM_LATENCY);
     end
 endgenerate
 

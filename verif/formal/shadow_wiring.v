@@ -4,9 +4,9 @@
 // computed, as shadow-products assumes. The shadow is decided by the tests of its own pass alone, which change no hit,
 // and a pixel gets the colour of its hit in this light.
 //
-// Multiplication is any function, and verdicts are read at the tester's outputs. Assumed: a reset first, a slope that is constant
-// from the cycle after its step, as slope-exact proves, and a camera that is constant from there to the end. All other
-// inputs may change in every cycle.
+// Multiplication is any function, and verdicts are read at the tester's outputs. Assumed: a reset first, a slope that
+// is constant from the cycle after its step, as slope-exact proves, and a camera that is constant from there to the
+// end. All other inputs may change in every cycle.
 //
 // [proof]
 // claim = "the test gets the ray or its shadow ray, which gets the nearest hit, and a pixel its colour in this light"
@@ -17,7 +17,6 @@
 // ]
 // cut = ["turned_generator if TURN", "ray_generator if not TURN"]
 // any_product = true
-// parameters = { TRAVEL = "PASS_LATENCY - 1" }
 // induction = 4
 // reach = 30
 // quick = ["exact one-unit light"]
@@ -27,31 +26,19 @@
 //   "ray_switch.tested_mirror_word as mirror_word in 30", "exact_unit.shadow_ray_i.found_slope as denominator",
 //   "exact_unit.camera_light_on 1", "shadow_sequencer.shadow_pass_awaited 0"]
 
-module shadow_wiring #(
-    parameter PATTERNS = 0, parameter RECTANGLES = 2, parameter INDEX_BITS = 1, parameter COORDINATE_BITS = 9,
-    parameter LOOK_BITS = 24, parameter CAMERA_BITS = 57, parameter SLOPE_BITS = 8, parameter LIGHT_BITS = 17,
-    parameter EYE_BITS = 11, parameter MIRROR_BITS = 13, parameter ROW_BITS = 8, parameter OFFSET_BITS = 9,
-    parameter TRAVEL = 3
-) (
-    input clk, input reset, input enable, input other_alive, input other_in_question, input [2:0] reflections,
-    input [RECTANGLES-1:0] usable, input [RECTANGLES-1:0] may_hit, input [2+5*COORDINATE_BITS+LOOK_BITS-1:0] rect,
-    input [CAMERA_BITS-1:0] camera, input [ROW_BITS-1:0] row, input [OFFSET_BITS-1:0] offset, input [23:0] background
-);
-localparam SURFACE_BITS = 2 + COORDINATE_BITS + LOOK_BITS, DISTANCE_BITS = EYE_BITS - 1;
-
-wire write_shadow, in_question;
-wire [3:0] aim;
-`define LIGHT
+module shadow_wiring;
+localparam DISTANCE_BITS = EYE_BITS - 1, TRAVEL = PASS_LATENCY - 1;
 `include "exact_unit_ports.v"
+wire write_shadow = steps_write_shadow, in_question = fate_in_question;
+wire [3:0] aim = steps_aim;
+wire [CAMERA_BITS-1:0] camera = camera_word;
+(* anyseq *) reg other_in_question;
+assign fate_any_in_question = in_question || other_in_question;
 
 reg last_known = 1'b0;
-reg [CAMERA_BITS-1:0] last_camera;
-always @(posedge clk) begin
-    last_known <= known;
-    last_camera <= camera;
-end
+always @(posedge clk) last_known <= known;
 always @* if (known) begin
-    if (loaded && state > 1) assume (camera == last_camera);
+    if (loaded && state > 1) assume ($stable(camera));
     assert (state <= 4);
 end
 
@@ -59,25 +46,20 @@ end
 reg [3:0] last_aim = 4'b0000;
 reg last_from_light = 1'b0;
 reg [TRAVEL-1:0] starts;
-(* hierconn *) wire \design.control.from_light ;
-wire from_light = \design.control.from_light ;
-(* hierconn *) wire \design.control.ray_sequencer_i.stop ;
-(* hierconn *) wire [TRAVEL-1:0] \design.control.in_flight ;
-(* hierconn *) wire \design.control.ray_sequencer_i.fetched ;
-(* hierconn *) wire [1:0] \design.control.shadow_sequencer_i.state ;  // 0 waits, 1 aims, 2 tests
-(* hierconn *) wire [3:0] \design.control.shadow_sequencer_i.cycle ;
-wire [1:0] shadow_state = \design.control.shadow_sequencer_i.state ;
-wire [3:0] cycle = \design.control.shadow_sequencer_i.cycle ;
+wire from_light = control.from_light;
+wire [1:0] shadow_state = control.shadow_sequencer_i.state;
+wire [3:0] cycle = control.shadow_sequencer_i.cycle;
 always @(posedge clk) begin
     last_aim <= reset ? 0 : aim;
     last_from_light <= from_light;
-    starts <= \design.control.ray_sequencer_i.stop ? 0 : {starts, find};
+    starts <= control.ray_sequencer_i.stop ? 0 : {starts, find};
 end
 always @* if (known) begin
-    assert (shadow_state <= 2 && \design.control.in_flight == starts);
+    assert (shadow_state <= 2 && control.in_flight == starts);
     if (shadow_state == 1) assert (cycle == 1 || cycle == 2 || cycle == 4 || cycle == 8);
     if (shadow_state != 0) assert (state == 2);
-    if (shadow_state == 1) assert (starts[TRAVEL-2:0] == 0 && (cycle == 1 || starts == 0) && !\design.control.ray_sequencer_i.fetched );
+    if (shadow_state == 1) assert (starts[TRAVEL-2:0] == 0 && (cycle == 1 || starts == 0));
+    if (shadow_state == 1) assert (!control.ray_sequencer_i.fetched);
     if (state != 2) assert (starts == 0);
     if (find) assert (state == 2 && aim == 0);
     // One cycle of aim follows the other.
@@ -92,112 +74,64 @@ always @* if (known) begin
 end
 
 // The ray that is tested.
-(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.eye_x , \design.unit.eye_y , \design.unit.eye_z ;
-(* hierconn *) wire [2:0] \design.unit.signs_word , \design.unit.shadow_signs_word ;
-(* hierconn *) wire [MIRROR_BITS-1:0] \design.unit.mirror_word ;
-(* hierconn *) wire [LIGHT_BITS-1:0] \design.unit.shadow_slope_dx , \design.unit.shadow_slope_dy ;
-(* hierconn *) wire [LIGHT_BITS-1:0] \design.unit.shadow_slope_dz ;
-(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.rect_tester_i.eye_x , \design.unit.rect_tester_i.eye_y ;
-(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.rect_tester_i.eye_z ;
-(* hierconn *) wire [2:0] \design.unit.rect_tester_i.signs_word ;
-(* hierconn *) wire [LIGHT_BITS-1:0] \design.unit.rect_tester_i.slope_dx , \design.unit.rect_tester_i.slope_dy ;
-(* hierconn *) wire [LIGHT_BITS-1:0] \design.unit.rect_tester_i.slope_dz ;
-(* hierconn *) wire [MIRROR_BITS-1:0] \design.unit.rect_tester_i.mirror_word ;
-wire [3*EYE_BITS-1:0] eye = {\design.unit.eye_x , \design.unit.eye_y , \design.unit.eye_z };
-wire [3*EYE_BITS-1:0] tested_eye = {\design.unit.rect_tester_i.eye_x , \design.unit.rect_tester_i.eye_y ,
-                                    \design.unit.rect_tester_i.eye_z };
-wire [3*LIGHT_BITS-1:0] tested_slope = {\design.unit.rect_tester_i.slope_dx , \design.unit.rect_tester_i.slope_dy ,
-                                        \design.unit.rect_tester_i.slope_dz };
+wire [3*EYE_BITS-1:0] eye = {unit.eye_x, unit.eye_y, unit.eye_z};
+wire [3*EYE_BITS-1:0] tested_eye = {unit.rect_tester_i.eye_x, unit.rect_tester_i.eye_y, unit.rect_tester_i.eye_z};
+wire [3*LIGHT_BITS-1:0] tested_slope = {unit.rect_tester_i.slope_dx, unit.rect_tester_i.slope_dy,
+                                        unit.rect_tester_i.slope_dz};
 wire [LIGHT_BITS-1:0] dx = slope[3*SLOPE_BITS-1 -: SLOPE_BITS], dy = slope[2*SLOPE_BITS-1 -: SLOPE_BITS];
 wire [LIGHT_BITS-1:0] dz = slope[SLOPE_BITS-1:0];
-wire [COORDINATE_BITS-1:0] light_x = camera[3*COORDINATE_BITS+2 -: COORDINATE_BITS];
-wire [COORDINATE_BITS-1:0] light_y = camera[2*COORDINATE_BITS+2 -: COORDINATE_BITS];
-wire [COORDINATE_BITS-1:0] light_z = camera[COORDINATE_BITS+2 -: COORDINATE_BITS];
-wire [EYE_BITS-1:0] from_x = light_x, from_y = light_y, from_z = light_z;
-(* hierconn *) wire \design.unit.looking ;
-wire looking = \design.unit.looking ;
+wire [EYE_BITS-1:0] from_x = camera_light_x, from_y = camera_light_y, from_z = camera_light_z;
+wire looking = unit.looking;
 reg asked;
 always @(posedge clk) if (aim[3]) asked <= in_question;
 always @* if (known && state == 2) assert (looking == (from_light && asked));
 always @* if (known) begin
     if (looking) begin
-        assert (tested_eye == {from_x, from_y, from_z} && !\design.unit.rect_tester_i.mirror_word [MIRROR_BITS-1]);
-        assert (\design.unit.rect_tester_i.signs_word == \design.unit.shadow_signs_word );
-        assert (tested_slope == {\design.unit.shadow_slope_dx , \design.unit.shadow_slope_dy ,
-                                 \design.unit.shadow_slope_dz });
+        assert (tested_eye == {from_x, from_y, from_z} && !unit.rect_tester_i.mirror_word[MIRROR_BITS-1]);
+        assert (unit.rect_tester_i.signs_word == unit.shadow_signs_word);
+        assert (tested_slope == {unit.shadow_slope_dx, unit.shadow_slope_dy, unit.shadow_slope_dz});
     end
     else begin
-        assert (tested_eye == eye && \design.unit.rect_tester_i.mirror_word == \design.unit.mirror_word );
-        assert (\design.unit.rect_tester_i.signs_word == \design.unit.signs_word && tested_slope == {dx, dy, dz});
+        assert (tested_eye == eye && unit.rect_tester_i.mirror_word == unit.mirror_word);
+        assert (unit.rect_tester_i.signs_word == unit.signs_word && tested_slope == {dx, dy, dz});
     end
 end
 
 // The shadow ray's inputs, and how long they are constant.
-(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.shadow_ray_i.eye_x , \design.unit.shadow_ray_i.eye_y ;
-(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.shadow_ray_i.eye_z ;
-(* hierconn *) wire [2:0] \design.unit.shadow_ray_i.signs_word ;
-(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.shadow_ray_i.slope_dx , \design.unit.shadow_ray_i.slope_dy ;
-(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.shadow_ray_i.slope_dz ;
-(* hierconn *) wire [CAMERA_BITS-1:0] \design.unit.shadow_ray_i.camera_word ;
-(* hierconn *) wire [DISTANCE_BITS-1:0] \design.unit.shadow_ray_i.found_distance ;
-(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.shadow_ray_i.found_slope ;
-(* hierconn *) wire [SURFACE_BITS-1:0] \design.unit.shadow_ray_i.found_surface_word ;
-(* hierconn *) wire [DISTANCE_BITS-1:0] \design.unit.nearest_hit_i.found_distance ;
-(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.nearest_hit_i.found_slope ;
-(* hierconn *) wire [SURFACE_BITS-1:0] \design.unit.nearest_hit_i.found_surface_word ;
-(* hierconn *) wire \design.unit.nearest_hit_i.found ;
 wire [3*EYE_BITS+3*SLOPE_BITS+CAMERA_BITS+2:0] ray = {
-    \design.unit.shadow_ray_i.eye_x , \design.unit.shadow_ray_i.eye_y , \design.unit.shadow_ray_i.eye_z ,
-    \design.unit.shadow_ray_i.signs_word , \design.unit.shadow_ray_i.slope_dx , \design.unit.shadow_ray_i.slope_dy ,
-    \design.unit.shadow_ray_i.slope_dz , \design.unit.shadow_ray_i.camera_word };
+    unit.shadow_ray_i.eye_x, unit.shadow_ray_i.eye_y, unit.shadow_ray_i.eye_z,
+    unit.shadow_ray_i.signs_word, unit.shadow_ray_i.slope_dx, unit.shadow_ray_i.slope_dy,
+    unit.shadow_ray_i.slope_dz, unit.shadow_ray_i.camera_word};
 wire [DISTANCE_BITS+SLOPE_BITS+SURFACE_BITS-1:0] target = {
-    \design.unit.shadow_ray_i.found_distance , \design.unit.shadow_ray_i.found_slope ,
-    \design.unit.shadow_ray_i.found_surface_word };
-reg [3*EYE_BITS+3*SLOPE_BITS+CAMERA_BITS+2:0] last_ray;
-reg [DISTANCE_BITS+SLOPE_BITS+SURFACE_BITS-1:0] last_target;
-reg last_found;
-always @(posedge clk) begin
-    last_ray <= ray;
-    last_target <= target;
-    last_found <= \design.unit.nearest_hit_i.found ;
-end
+    unit.shadow_ray_i.found_distance, unit.shadow_ray_i.found_slope, unit.shadow_ray_i.found_surface_word};
 always @* if (known) begin
-    assert (ray == {eye, \design.unit.signs_word , slope, camera});
-    assert (target == {\design.unit.nearest_hit_i.found_distance , \design.unit.nearest_hit_i.found_slope ,
-                       \design.unit.nearest_hit_i.found_surface_word });
-    if (aim != 0) assert (ray == last_ray);
+    assert (ray == {eye, unit.signs_word, slope, camera});
+    assert (target == {unit.nearest_hit_i.found_distance, unit.nearest_hit_i.found_slope,
+                       unit.nearest_hit_i.found_surface_word});
+    if (aim != 0) assert ($stable(ray));
     if (last_known && (aim[3:1] != 0 || from_light || last_from_light))
-        assert (target == last_target && \design.unit.nearest_hit_i.found == last_found);
+        assert ($stable(target) && $stable(unit.nearest_hit_i.found));
 end
 
 // The shadow: any of its pass's verdicts that comes before the point.
-(* hierconn *) wire \design.unit.rect_tester_i.hit ;
-(* hierconn *) wire [DISTANCE_BITS-1:0] \design.unit.rect_tester_i.numerator ;
-(* hierconn *) wire [LIGHT_BITS-1:0] \design.unit.rect_tester_i.denominator ;
-(* hierconn *) wire \design.unit.shadow_register_i.shaded ;
-(* hierconn *) wire \design.unit.shadow_ray_i.facing ;
-wire [COORDINATE_BITS-1:0] distance = \design.unit.rect_tester_i.numerator [COORDINATE_BITS-1:0];
-wire [COORDINATE_BITS+SLOPE_BITS-1:0] reached = distance * \design.unit.nearest_hit_i.found_slope ;
+wire [COORDINATE_BITS-1:0] distance = unit.rect_tester_i.numerator[COORDINATE_BITS-1:0];
+wire [COORDINATE_BITS+SLOPE_BITS-1:0] reached = distance * unit.nearest_hit_i.found_slope;
 reg dark = 1'b0, aimed = 1'b0;
 always @(posedge clk) begin
     aimed <= aimed || aim[0];
-    dark <= !aim[0] && (dark || starts[2] && from_light && \design.unit.rect_tester_i.hit
-                        && reached < \design.unit.rect_tester_i.denominator );
+    dark <= !aim[0] && (dark || starts[2] && from_light && unit.rect_tester_i.hit
+                        && reached < unit.rect_tester_i.denominator);
 end
-always @* if (known && aimed) assert (\design.unit.shadow_register_i.shaded == dark);
+always @* if (known && aimed) assert (unit.shadow_register_i.shaded == dark);
 
 // A pixel's light.
-(* hierconn *) wire [23:0] \design.unit.colour_combiner_i.found_colour ;
-(* hierconn *) wire \design.unit.missed ;
-wire light_on = camera[0], lit = \design.unit.shadow_ray_i.facing && !dark;
-(* hierconn *) wire [23:0] \design.unit.lit_colour_word ;
-wire [23:0] own = \design.unit.lit_colour_word ;
+wire light_on = camera[0], lit = unit.shadow_ray_i.facing && !dark;
+wire [23:0] own = unit.lit_colour_word;
 wire [9:0] red = camera[2:1] * own[23:16], green = camera[2:1] * own[15:8], blue = camera[2:1] * own[7:0];
 always @* if (known && aimed) begin
-    assert (\design.unit.colour_combiner_i.found_colour
-            == (light_on && !lit ? {red[9:2], green[9:2], blue[9:2]} : own));
-    assert (in_question == (light_on && lit && \design.unit.nearest_hit_i.found && !\design.unit.missed ));
-    if (!PATTERNS) assert (own == \design.unit.nearest_hit_i.found_surface_word [23:0]);
+    assert (unit.colour_combiner_i.found_colour == (light_on && !lit ? {red[9:2], green[9:2], blue[9:2]} : own));
+    assert (in_question == (light_on && lit && unit.nearest_hit_i.found && !unit.missed));
+    if (!PATTERNS) assert (own == unit.nearest_hit_i.found_surface_word[23:0]);
 end
 
 always @* cover (known && add && dark && aimed);

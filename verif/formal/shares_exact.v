@@ -22,62 +22,40 @@
 // "exact-vga240-u1-r12-m4-c8-materials" = ["colour_share.some as half", "colour_sum.share short"]
 // "exact-vga240-u1-r12-m1-c8" = ["colour_share.steps_store_ray 1", "colour_combiner.missed 0"]
 
-module shares_exact #(
-    parameter MATERIALS = 0, parameter REFLECTIONS = 1, parameter COLOUR_BITS = 8, parameter SHARE_BITS = 2
-) (
-    input clk, input reset, input add, input found, input [23:0] colour, input [2:0] mirror, input [23:0] background,
-    input [2:0] reflections
-);
+module shares_exact;
+colour_combiner dut (.*);
+wire reset = steps_reset_colour, add = steps_add_colour;
+wire [23:0] colour = found_colour, background = picture_background;
 localparam SUM_BITS = 7 + SHARE_BITS;
 
 reg running = 1'b0, reached;
-reg [2:0] rays, last_reflections;
+reg [2:0] rays;
+(* anyseq *) reg [2:0] reflections;
+wire [2:0] quarters;
 wire is_last = rays == reflections, hit = reached && found;
-wire [2:0] quarters = MATERIALS ? mirror : 3'd2;
+generate
+    if (MATERIALS) assign quarters = found_mirror;
+    else assign quarters = 2;
+endgenerate
+assign steps_store_ray = add && !is_last;
 reg [SHARE_BITS-1:0] weight;
 // Without materials, half is still passed on after the background was reached, as only the background follows.
 wire [SHARE_BITS+2:0] product = is_last || MATERIALS && !hit ? 0 : weight * quarters;
 wire [SHARE_BITS-1:0] passed = product >> 2;
 always @(posedge clk) begin
-    last_reflections <= reflections;
     if (reset) begin
-        running <= 1'b1;
-        reached <= 1'b1;
-        rays <= 0;
+        {running, reached, rays} <= {2'b11, 3'd0};
         weight <= 1 << SHARE_BITS - 1;
     end
-    else if (add) begin
-        reached <= hit;
-        rays <= rays + 1;
-        weight <= passed;
-    end
+    else if (add) {reached, rays, weight} <= {hit, rays + 3'd1, passed};
 end
 always @* begin
-    assume (mirror <= 4);
+    assume (quarters <= 4);
     assume (reflections <= REFLECTIONS);
     if (add) assume (running && !reset && rays <= reflections);
-    if (running && rays > 0) assume (reflections == last_reflections);
+    if (running && rays > 0) assume ($stable(reflections));
     if (add) assert (product[1:0] == 0);
 end
-
-wire [3*COLOUR_BITS-1:0] pixel;
-wire missed;
-generate
-    if (MATERIALS) begin: design
-        colour_combiner dut (
-            .clk(clk), .found(found), .found_colour(colour), .found_mirror(mirror), .missed(missed),
-            .steps_reset_colour(reset), .steps_add_colour(add), .steps_store_ray(add && !is_last),
-            .picture_background(background), .pixel_word(pixel)
-        );
-    end
-    else begin: design
-        colour_combiner dut (
-            .clk(clk), .found(found), .found_colour(colour), .missed(missed), .steps_reset_colour(reset),
-            .steps_add_colour(add), .steps_store_ray(add && !is_last), .picture_background(background),
-            .pixel_word(pixel)
-        );
-    end
-endgenerate
 
 // Invariants: a weight is at most the full one, and has a factor of 4 for each mirror that may follow. With at most two
 // mirrors it is a product of two numbers 0 to 4, so the design needs only two summands; with more mirrors it
@@ -94,27 +72,16 @@ function of_two_mirrors(input [SHARE_BITS-1:0] number);
                 if (number == one * other) of_two_mirrors = 1;
     end
 endfunction
-(* hierconn *) wire [SHARE_BITS-1:0] \design.dut.colour_share_i.weight ;
-(* hierconn *) wire [SHARE_BITS-1:0] \design.dut.colour_share_i.share ;
-(* hierconn *) wire [7:0] \design.dut.colour_sum_0_i.channel , \design.dut.colour_sum_1_i.channel ;
-(* hierconn *) wire [7:0] \design.dut.colour_sum_2_i.channel ;
-(* hierconn *) wire [SUM_BITS-1:0] \design.dut.colour_sum_0_i.total ;
-(* hierconn *) wire [SUM_BITS-1:0] \design.dut.colour_sum_1_i.total ;
-(* hierconn *) wire [SUM_BITS-1:0] \design.dut.colour_sum_2_i.total ;
-wire [3*SUM_BITS-1:0] totals = {
-    \design.dut.colour_sum_0_i.total , \design.dut.colour_sum_1_i.total , \design.dut.colour_sum_2_i.total
-};
-wire [23:0] seen = {
-    \design.dut.colour_sum_0_i.channel , \design.dut.colour_sum_1_i.channel , \design.dut.colour_sum_2_i.channel
-};
+wire [3*SUM_BITS-1:0] totals = {dut.colour_sum_0_i.total, dut.colour_sum_1_i.total, dut.colour_sum_2_i.total};
+wire [23:0] seen = {dut.colour_sum_0_i.channel, dut.colour_sum_1_i.channel, dut.colour_sum_2_i.channel};
 always @* if (add) begin
-    assert (\design.dut.colour_share_i.share == weight - passed);
+    assert (dut.colour_share_i.share == weight - passed);
     if (weight != 0) assert (seen == (hit ? colour : background));
 end
 always @* if (running) begin
     assert (rays <= reflections + 1);
     if (rays <= reflections) begin
-        assert (weight == \design.dut.colour_share_i.weight );
+        assert (weight == dut.colour_share_i.weight);
         if (MATERIALS) assert (multiple_of_4(weight, REFLECTIONS - rays) && weight <= 1 << SHARE_BITS - 1);
         if (MATERIALS && REFLECTIONS <= 2) assert (of_two_mirrors(weight));
         if (MATERIALS) assert (reached || weight == 0);
@@ -138,7 +105,7 @@ generate
     for (channel = 0; channel < 3; channel = channel + 1) begin: channels
         wire [7:0] saw = seen[8*channel +: 8];
         wire [SUM_BITS-1:0] shown;
-        if (MATERIALS && REFLECTIONS > 2) assign shown = saw * \design.dut.colour_share_i.share ;
+        if (MATERIALS && REFLECTIONS > 2) assign shown = saw * dut.colour_share_i.share;
         else assign shown = times(weight - passed, saw);
         reg [SUM_BITS-1:0] sum;
         always @(posedge clk) begin
@@ -147,10 +114,10 @@ generate
         end
         always @* if (running) begin
             assert (totals[SUM_BITS*channel +: SUM_BITS] == sum);
-            assert (pixel[COLOUR_BITS*channel +: COLOUR_BITS] == sum >> SUM_BITS - COLOUR_BITS);
+            assert (pixel_word[COLOUR_BITS*channel +: COLOUR_BITS] == sum >> SUM_BITS - COLOUR_BITS);
         end
     end
 endgenerate
 
-always @* cover (running && rays == REFLECTIONS + 1 && reached && pixel == 24'h4d4d4d);
+always @* cover (running && rays == REFLECTIONS + 1 && reached && pixel_word == 24'h4d4d4d);
 endmodule

@@ -20,15 +20,13 @@
 // "beam-vga240-s2-u1-r2-m1-c8-turn" = ["rect_walker.low_q signed-short", "rect_walker.growth_way_q negated",
 //   "slope_walker.slope_z late"]
 
-module turned_walks #(
-    parameter WALK_BITS = 29, parameter DISTANCE_BITS = 10, parameter SLOPE_BITS = 20, parameter STEEPEST = 400000
-) (
-    input clk, input start_line, input step_way, input step_bounds, input step_slope, input [1:0] any_axis,
-    input [5*DISTANCE_BITS-1:0] any_distances, input [3*SLOPE_BITS-1:0] aim
-);
+module turned_walks;
 localparam WIDE = SLOPE_BITS + 1, FIELDS = 6;
 
 // A rectangle: its axis, and n and the distances to the four bounds, n in the lowest bits.
+(* anyseq *) reg start_line, step_slope;
+(* anyseq *) reg [1:0] any_axis;
+(* anyseq *) reg [5*DISTANCE_BITS-1:0] any_distances;
 reg started = 1'b0;
 reg [1:0] axis;
 reg [5*DISTANCE_BITS-1:0] distances;
@@ -39,24 +37,18 @@ end
 always @* assume (any_axis < 3);
 
 // The sums of all steps, x in the lowest bits.
+wire [3*SLOPE_BITS-1:0] aim = {aim_z, aim_y, aim_x};
 wire [3*WIDE-1:0] way_slope, bounds_slope, slope;
-slope_sum #(.SLOPE_BITS(SLOPE_BITS), .STEEPEST(STEEPEST)) ways (
-    .clk(clk), .start(start_line), .started(started), .step(step_way), .aim(aim), .slope(way_slope)
-), bounds (
-    .clk(clk), .start(start_line), .started(started), .step(step_bounds), .aim(aim), .slope(bounds_slope)
-), slopes (
-    .clk(clk), .start(start_line), .started(started), .step(step_slope), .aim(aim), .slope(slope)
-);
+slope_sum #(SLOPE_BITS, STEEPEST) ways (clk, start_line, started, step_way, aim, way_slope);
+slope_sum #(SLOPE_BITS, STEEPEST) bounds (clk, start_line, started, step_bounds, aim, bounds_slope);
+slope_sum #(SLOPE_BITS, STEEPEST) slopes (clk, start_line, started, step_slope, aim, slope);
 
 // p is y unless the plane is on y, then x; q is z unless the plane is on z, then x.
 function [1:0] along(input integer field, input [1:0] plane);
     along = field == 0 ? (plane == 1 ? 0 : 1) : field == 1 ? (plane == 2 ? 0 : 2) : plane;
 endfunction
-wire [FIELDS*WALK_BITS-1:0] walk, growth;
-rect_walker walker (
-    .clk(clk), .load(start_line), .step_way(step_way), .step_bounds(step_bounds), .start_word({FIELDS*WALK_BITS{1'b0}}),
-    .growth_word(growth), .walk_word(walk)
-);
+rect_walker walker (.*, .load(start_line));
+assign start_word = 0;
 generate
     genvar field;
     for (field = 0; field < FIELDS; field = field + 1) begin: fields
@@ -66,13 +58,14 @@ generate
         wire signed [WIDE-1:0] here = (field < 2 ? way_slope : bounds_slope) >> which * WIDE;
         wire signed [SLOPE_BITS-1:0] grows = aim >> which * SLOPE_BITS;
         wire signed [WIDE-1:0] step = grows, there = here + grows;
-        wire signed [WALK_BITS-1:0] product = distance * here, stride = distance * step, next_product = distance * there;
-        assign growth[(FIELDS-1-field)*WALK_BITS +: WALK_BITS] = stride;
+        wire signed [WALK_BITS-1:0] product = distance * here, stride = distance * step;
+        wire signed [WALK_BITS-1:0] next_product = distance * there;
+        assign growth_word[(FIELDS-1-field)*WALK_BITS +: WALK_BITS] = stride;
         always @* begin
             assume (next_product == product + stride);  // next-column
             if (here == 0) assume (product == 0);
         end
-        wire signed [WALK_BITS-1:0] value = walk[(FIELDS-1-field)*WALK_BITS +: WALK_BITS];
+        wire signed [WALK_BITS-1:0] value = walk_word[(FIELDS-1-field)*WALK_BITS +: WALK_BITS];
         always @* if (started) assert (value == product);
     end
 
@@ -81,15 +74,11 @@ generate
     always @* assert (FARTHEST < 64'd1 << WALK_BITS - 1);
 endgenerate
 
-wire signed [SLOPE_BITS-1:0] x, y, z;
-slope_walker slope_dut (
-    .clk(clk), .start_line(start_line), .step(step_slope), .aim_x(aim[0 +: SLOPE_BITS]),
-    .aim_y(aim[SLOPE_BITS +: SLOPE_BITS]), .aim_z(aim[2*SLOPE_BITS +: SLOPE_BITS]), .slope_x(x), .slope_y(y), .slope_z(z)
-);
+slope_walker slope_dut (.*, .step(step_slope));
 always @* if (started) begin
-    assert (x == $signed(slope[0 +: WIDE]));
-    assert (y == $signed(slope[WIDE +: WIDE]));
-    assert (z == $signed(slope[2*WIDE +: WIDE]));
+    assert (slope_x == $signed(slope[0 +: WIDE]));
+    assert (slope_y == $signed(slope[WIDE +: WIDE]));
+    assert (slope_z == $signed(slope[2*WIDE +: WIDE]));
 end
 
 always @* cover (started && way_slope != bounds_slope && bounds_slope != 0 && slope != way_slope);

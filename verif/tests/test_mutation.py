@@ -5,7 +5,11 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable
+from functools import partial
+from itertools import product
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -46,13 +50,8 @@ def recorded(tmp_path):
     def record(remainders, change=dict) -> Recording:
         ports = {"remainder": WIDTH, "digits": COUNT, "divisor": WIDTH, "next_remainder": WIDTH, "next_digits": COUNT}
         leaf = Leaf(divider_step, lambda: {name: unsigned(width) for name, width in ports.items()}, tmp_path)
-        stimulus = [
-            {"remainder": remainder, "digits": digits, "divisor": divisor}
-            for divisor in range(1, 1 << WIDTH)
-            for remainder in remainders
-            if remainder < divisor
-            for digits in range(1 << COUNT)
-        ]
+        operands = product(remainders, range(1 << COUNT), range(1, 1 << WIDTH))
+        stimulus = [dict(zip(ports, each, strict=False)) for each in operands if each[0] < each[2]]
         record_run(leaf, tmp_path / "recording", stimulus, [change(cycle) for cycle in leaf.run_myhdl(stimulus)], 0)
         return Recording(tmp_path / "recording", tmp_path / "work")
 
@@ -62,17 +61,10 @@ def recorded(tmp_path):
 @pytest.fixture
 def word(tmp_path) -> Recording:
     """Recording of a word that is reset and then written in two cycles."""
-    leaf = Leaf(
-        scene_word,
-        lambda: {
-            "clk": bit(),
-            "reset": reset_signal(),
-            "bus": SceneBus(7),
-            "selected": bit(),
-            **{name: unsigned(WORD_BITS) for name in ("implemented", "shadow", "live")},
-        },
-        tmp_path,
-    )
+    ports: dict[str, Callable[[], Any]] = {"clk": bit, "reset": reset_signal, "selected": bit}
+    ports["bus"] = partial(SceneBus, 7)
+    ports |= dict.fromkeys(("implemented", "shadow", "live"), partial(unsigned, WORD_BITS))
+    leaf = Leaf(scene_word, lambda: {name: make() for name, make in ports.items()}, tmp_path)
     written = {"reset": 0, "selected": 1, "bus_write": 1, "bus_mask": 0xFFFF, "bus_data": 0x5A5A, "implemented": 0xFFF}
     stimulus = [{"reset": 1}, written, written]
     record_run(leaf, tmp_path / "recording", stimulus, leaf.run_myhdl(stimulus), 1)

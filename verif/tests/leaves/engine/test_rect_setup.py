@@ -28,13 +28,15 @@ def any_slope(random: np.random.Generator, config: Configuration) -> np.ndarray:
 
 @by_screen
 def test_rect_setup(config, tmp_path, random, in_adders=False):
-    """Random lines; a reset ends the last one."""
+    """Random lines, with each rectangle unusable in at least one; a reset ends the last line."""
     count, ports = config.rectangles, {"start": lambda: walk_of(config), "growth": lambda: growth_of(config)}
     ports |= {"camera": Point, "slope": lambda: Direction(exact_slope_bits(config) + 1)}
     leaf = leaf_of(rect_setup, tmp_path, config, **ports, load=count, in_adders=in_adders)
     stimulus, loads = [{"reset": 1}] * 2, {}
-    for _ in range(12):
+    for line in range(12):
         table = random_looks(random, flat_tables(random, count))
+        if line < count:
+            table.enabled[line] = False  # so that each rectangle is unusable at least once
         camera = [any_place(random) for _ in range(3)]
         held = by_axis("camera_", camera) | {"reset": 0, "start_line": 0}
         held["rects_usable"] = sum(int(one) << i for i, one in enumerate(table.enabled))

@@ -11,7 +11,10 @@ AIM = 4
 
 
 def test_shadow_sequencer(tmp_path, random):
-    """Passes of any length and outcome: nothing in question, decided early, or tested to the last rectangle."""
+    """Passes of any length and outcome: nothing in question, decided early, or tested to the last rectangle.
+
+    traced is not read in the cycles of aim.
+    """
     leaf = leaf_of(shadow_sequencer, tmp_path, shadow_pass=ShadowPass, aim=AIM)
     names = ("aim", "from_light", *(f"shadow_pass_{name}" for name in ("awaited", "comes_next", "start", "stop")))
     stimulus, expected = [], []
@@ -32,9 +35,9 @@ def test_shadow_sequencer(tmp_path, random):
             cycle(1, None, 1, 0, 1, 1, 0, 0, reset=1)
             continue
         for number in range(AIM - 1):
-            cycle(1, None, 1 << number, 0, 1, 1, 0, 0)
+            cycle(int(random.integers(2)), None, 1 << number, 0, 1, 1, 0, 0)
         question = int(random.integers(2))
-        cycle(1, question, 1 << AIM - 1, 0, question, 0, question, 0)
+        cycle(int(random.integers(2)), question, 1 << AIM - 1, 0, question, 0, question, 0)
         if not question:
             outcomes.add("none")
             continue
