@@ -12,6 +12,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,7 @@ from raycaster.design import Design, packaged_for
 from raycaster.engines import SEED
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
+from raycaster.jobs import processes
 from raycaster.options import (
     CommandParser,
     add_build_option,
@@ -192,21 +194,37 @@ def synthesise_all(runs: list[Design], build: Path, family: str, console: Consol
 
 
 def build_models(
-    runs: list[Design], simulator: str, waves: bool, build: Path, netlists: Mapping[str, Netlist], console: Console
+    runs: list[Design],
+    simulator: str,
+    waves: bool,
+    build: Path,
+    netlists: Mapping[str, Netlist],
+    jobs: int,
+    console: Console,
 ) -> dict[str, Model]:
     """Build a model for each configuration, of its netlist if it has one; return them by the configuration's name."""
     models: dict[str, Model] = {}
-    for configuration in configurations(runs):
-        netlist = netlists.get(configuration.name)
-        # A netlist does not keep the names that the bench reads.
-        given = {"verilog": netlist.files, "defines": {"NETLIST": 1}} if netlist else {}
-        with console.waiting(f"building {configuration.name} with {simulator}", building(configuration.engine)):
-            started = time.perf_counter()
-            model = build_model(configuration, simulator, waves=waves, build=build, **given)
-        took = f"built in {time.perf_counter() - started:.1f} s" if model.fresh else "was built before"
-        console.print(f"{configuration.name} ({simulator}) {took}")
-        models[configuration.name] = model
+    wanted = configurations(runs)
+    with processes(min(jobs, len(wanted)))() as pool:
+        built = pool.map(partial(_build, simulator, waves, build), wanted, [netlists.get(one.name) for one in wanted])
+        for configuration in wanted:
+            with console.waiting(f"building {configuration.name} with {simulator}", building(configuration.engine)):
+                model, seconds = next(built)
+            took = f"built in {seconds:.1f} s" if model.fresh else "was built before"
+            console.print(f"{configuration.name} ({simulator}) {took}")
+            models[configuration.name] = model
     return models
+
+
+def _build(
+    simulator: str, waves: bool, build: Path, configuration: Configuration, netlist: Netlist | None
+) -> tuple[Model, float]:
+    """Build a model, and return it with the seconds that it took."""
+    started = time.perf_counter()
+    # A netlist does not keep the names that the bench reads.
+    given = {"verilog": netlist.files, "defines": {"NETLIST": 1}} if netlist else {}
+    model = build_model(configuration, simulator, waves=waves, build=build, **given)
+    return model, time.perf_counter() - started
 
 
 def run_all(runs: list[Design], models: dict[str, Model], sim: Path, jobs: int, console: Console) -> list[Outcome]:
@@ -345,7 +363,9 @@ def command_parser() -> CommandParser:
     )
     parser.add_argument("--waves", action="store_true", help="write waveforms next to the pictures")
     add_build_option(parser)
-    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="scenes to simulate at a time (default: 2)")
+    parser.add_argument(
+        "--jobs", type=int, default=2, metavar="N", help="models to build, scenes to simulate at a time (default: 2)"
+    )
     add_fix_option(parser)
     add_configuration_options(parser)
     add_keep_option(parser)
@@ -413,6 +433,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     # In a file or a pipe rich would assume 80 columns, too few for the table.
     console = Console()
     runs = _planned(arguments, console)
+    jobs = max(1, arguments.jobs)
     outputs = output_directory(arguments.build, given_options(arguments), gates=gates)
     for run in runs:
         check_replaceable(outputs / run.name)
@@ -421,11 +442,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         find_yosys()
     try:
         netlists = synthesise_all(runs, arguments.build, arguments.cells, console) if gates else {}
-        models = build_models(runs, arguments.simulator, arguments.waves, arguments.build, netlists, console)
+        models = build_models(runs, arguments.simulator, arguments.waves, arguments.build, netlists, jobs, console)
     except SimulationError as error:
         console.print(str(error), style="red", soft_wrap=True)
         return 1
-    outcomes = run_all(runs, models, outputs, max(1, arguments.jobs), console)
+    outcomes = run_all(runs, models, outputs, jobs, console)
     if gates:
         show_cells(netlists, console)
     show(outcomes, console, "through the netlist" if gates else None)

@@ -15,8 +15,10 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -72,13 +74,11 @@ VERILATOR_FLAGS = (
     "--no-public-flat-rw",
     "-Wno-fatal",
     "-O3",
-    # The compiler is very slow on large functions; see `_TwoTexts` for the files.
+    # The compiler is very slow on large functions; see `_OneText` for the files.
     "--output-split",
     "20000",
     "--output-split-cfuncs",
     "500",
-    "-CFLAGS",
-    "-fcoroutines -std=gnu++20",
 )
 
 
@@ -334,9 +334,13 @@ def build_model(
             log = directory.with_suffix(".log")
             for file, text in included.items():
                 (directory / file).write_text(text)
-            with _building(tool, models(build), arguments):
+            features = tuple(flag for flag in arguments if flag in _FEATURES)
+            with _building(tool):
                 try:
-                    (_TwoTexts(program, bench) if simulator == "verilator" else get_runner(simulator)).build(
+                    runner = get_runner(simulator)
+                    if simulator == "verilator":
+                        runner = _OneText(program, bench, partial(_compiler, tool, models(build), features))
+                    runner.build(
                         sources=[source.resolve() for source in sources],
                         hdl_toplevel=bench.top,
                         includes=[directory.resolve()],
@@ -353,45 +357,53 @@ def build_model(
     return Model(configuration, simulator, directory, waves, fresh, bench, wave_format)
 
 
-_TEXTS = {"fast": "-O1", "slow": "-O0"}
-"""Texts that a model is compiled as, and the optimisation of each."""
+_LEVEL = "-O1"
+"""Optimisation of code that runs in each cycle. With -O2, models run no faster and take a tenth longer to build."""
 
 
-class _TwoTexts(Verilator):
-    """cocotb's runner, but it compiles a model as two texts: code that runs in each cycle, and code that runs seldom.
+class _OneText(Verilator):
+    """cocotb's runner, but it compiles a model as one text, and does not optimise code that runs seldom.
 
-    File by file it takes three times as long, as each file reads the same large header, and precompiling that is slow
-    too. With -O2, models run no faster and take a tenth longer to build.
+    File by file it takes several times as long, as each file reads the same large headers.
     """
 
-    def __init__(self, program: Sequence[Path], bench: Bench):
-        """Build with this main program, if there is one, instead of cocotb's main program."""
+    def __init__(
+        self, program: Sequence[Path], bench: Bench, compiler: Callable[[list[str]], tuple[list[str], list[str]]]
+    ):
+        """Build with this main program, if there is one, instead of cocotb's; for the compiler see `_compiler`."""
         super().__init__()
-        self._program = program
+        self._program, self._compiler = program, compiler
         # A window records few cycles; optimising the code that records them would take half of the build time.
         self._seldom = "__Slow|__Trace__" if bench.window else "__Slow"
 
     def _build_command(self) -> Iterator[list[str]]:  # pyright: ignore[reportIncompatibleMethodOverride] run one by one
-        translate, make = super()._build_command()
-        for path in self._program:
-            # This fails if cocotb's main program is not in the command: with it, nothing would drive the clock.
-            theirs = translate.index(str(cocotb_config.share_dir / "lib" / "verilator" / "verilator.cpp"))
-            translate[theirs] = str(path)
+        translate, _make = super()._build_command()
+        # This fails if cocotb's main program is not in the command: with it, nothing would drive the clock.
+        theirs = cocotb_config.share_dir / "lib" / "verilator" / "verilator.cpp"
+        translate.remove(str(theirs))
         yield translate
         files = sorted(path.name for path in self.build_dir.glob("*.cpp"))
-        variables = []
-        for text, level in _TEXTS.items():
-            parts = [file for file in files if bool(re.search(self._seldom, file)) == (text == "slow")]
-            (self.build_dir / f"{text}.cpp").write_text("".join(f'#include "{part}"\n' for part in parts))
-            (self.build_dir / f"Vtop__pch.h.{text}.gch").touch()  # so that make does not precompile the header
-            kind = text.upper()
-            variables += [
-                f"VM_CLASSES_{kind}={text}",
-                f"VM_SUPPORT_{kind}=",
-                f"OPT_{kind}={level}",
-                f"VK_PCH_I_{kind}=",
-            ]
-        yield [*make, "VM_PARALLEL_BUILDS=1", *variables]
+        seldom = [file for file in files if re.search(self._seldom, file)]
+        often = [file for file in files if file not in seldom]
+        _write_text(self.build_dir, [*often, *(self._program or [theirs])], seldom)
+        given = {option: value.split() for option, value in pairwise(translate)}
+        command, library = self._compiler([_LEVEL, *given.get("-CFLAGS", ())])
+        yield [*command, TEXT, *library, *given["-LDFLAGS"], "-o", *given["-o"]]
+
+
+TEXT = "all.cc"
+"""File that includes all of a model's C++."""
+
+_UNOPTIMISED = """\
+#pragma GCC optimize ("O0")
+#pragma clang optimize off
+"""
+
+
+def _write_text(directory: Path, files: Sequence[str | Path], seldom: Sequence[str] = ()) -> None:
+    """Write a model's text: C++ files, then those that run too seldom to be worth optimising."""
+    often, rest = ("".join(f'#include "{file}"\n' for file in some) for some in (files, seldom))
+    (directory / TEXT).write_text(f"{often}{_UNOPTIMISED if rest else ''}{rest}")
 
 
 def build_program(
@@ -435,12 +447,8 @@ def build_program(
                 _call(tool, directory, "iverilog", "-g2005", "-s", top, "-o", executable, *files)
             else:
                 verilate(tool, directory, top, files, flags if main else ("--main", "--timing", *flags), main[:1])
-                library, include = _runtime(tool, models(build), ())
-                _call(
-                    tool, directory, "g++", "-std=gnu++20", "-fcoroutines", "-pthread", *VERILATED_DEFINITIONS, "-I.",
-                    f"-I{include}", f"-I{include / 'vltstd'}", *compiler, "all.cc", *sorted(library.glob("*.o")),
-                    "-o", executable,
-                )  # fmt: skip
+                command, library = _compiler(tool, models(build), (), compiler)
+                _call(tool, directory, *command, TEXT, *library, "-o", executable)
                 _tidy(directory)
     return ["vvp", "-n", str(executable)] if simulator == "icarus" else [str(executable)]
 
@@ -448,7 +456,7 @@ def build_program(
 def verilate(
     tool: Tool, directory: Path, top: str, files: Sequence[Path], flags: Sequence[str], main: Sequence[Path] = ()
 ) -> None:
-    """Translate a design to `all.cc`, a C++ text with everything except Verilator's library.
+    """Translate a design to `TEXT`, a C++ text with everything except Verilator's library.
 
     Args:
         tool: Verilator, from `find_tool`.
@@ -467,16 +475,25 @@ def verilate(
     )  # fmt: skip
     # As one text it compiles several times faster than file by file, and both clock edges are inlined.
     parts = [*sorted(path.name for path in directory.glob("*.cpp")), *(path.resolve() for path in main)]
-    (directory / "all.cc").write_text("".join(f'#include "{part}"\n' for part in parts))
+    _write_text(directory, parts)
 
 
-VERILATED_DEFINITIONS = tuple(
-    f"-DVM_{name}=0" for name in ("COVERAGE", "SC", "TRACE", "TRACE_FST", "TRACE_VCD", "TRACE_SAIF")
-)
-"""Macros that Verilator's own makefile would define."""
+_MACROS = tuple(f"VM_{name}" for name in ("COVERAGE", "SC", "TRACE", "TRACE_FST", "TRACE_VCD", "TRACE_SAIF"))
 
-_FEATURES = {"--trace", "--trace-fst", "--coverage-line", "--coverage-expr", "--coverage-toggle"}
-"""Flags that change the contents of Verilator's library; none takes a value."""
+VERILATED_DEFINITIONS = tuple(f"-D{macro}=0" for macro in _MACROS)
+"""Macros that Verilator's own makefile would define for a design without features."""
+
+_FEATURES = {
+    "--trace": ("TRACE", "TRACE_VCD"),
+    "--trace-fst": ("TRACE", "TRACE_FST"),
+    "--coverage-line": ("COVERAGE",),
+    "--coverage-expr": ("COVERAGE",),
+    "--coverage-toggle": ("COVERAGE",),
+}
+"""Flags that change the contents of Verilator's library, none of which takes a value, and their macros."""
+
+_HEADERS = ("verilated.h", "verilated_timing.h", "verilated_vpi.h")
+"""Headers of Verilator's library to precompile."""
 
 _RUNTIME = "module runtime; initial #1 $finish; endmodule\n"
 """Smallest design that needs all of the library that others need."""
@@ -534,20 +551,40 @@ def _tidy(directory: Path) -> None:
 
 
 @contextlib.contextmanager
-def _building(tool: Tool, parent: Path, arguments: Sequence[str]) -> Iterator[None]:
+def _building(tool: Tool) -> Iterator[None]:
     """Set the environment for cocotb's runner, which uses that of this process."""
     before = dict(os.environ)
-    environment = dict(tool.environment)
-    if tool.name == "verilator":
-        library, _ = _runtime(tool, parent, tuple(flag for flag in arguments if flag in _FEATURES))
-        # The shell expands the pattern when linking.
-        environment["MAKEFLAGS"] += f" VM_GLOBAL_FAST= LOADLIBES={library}/*.o"
-    os.environ.update(environment)
+    os.environ.update(tool.environment)
     try:
         yield
     finally:
         os.environ.clear()
         os.environ.update(before)
+
+
+def _compiler(tool: Tool, parent: Path, features: Sequence[str], flags: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Return the command that compiles a model's text in its directory, and the objects and libraries to link.
+
+    The library's headers take longer than most designs, so they are precompiled, once for all models; but only for the
+    usual optimisation, as GCC crashes with headers that were precompiled for another one.
+    """
+    library, include = _runtime(tool, parent, features)
+    on = {f"VM_{macro}" for feature in features for macro in _FEATURES[feature]}
+    macros = [f"-D{macro}={int(macro in on)}" for macro in _MACROS]
+    command = ["g++", "-std=gnu++20", "-fcoroutines", "-pthread", *macros, f"-I{include}", f"-I{include / 'vltstd'}"]
+    if [flag for flag in flags if flag.startswith("-O")][-1:] == [_LEVEL]:
+        command.append(_LEVEL)
+        with made(parent, "headers", (), (_output("g++", "--version"), tool, command, _HEADERS)) as (place, fresh):
+            directory = place.resolve()
+            if fresh:
+                (directory / "library.h").write_text("".join(f'#include "{header}"\n' for header in _HEADERS))
+                _call(tool, directory, *command, "-x", "c++-header", "library.h", "-o", "library.h.gch")
+        command += ["-Winvalid-pch", "-include", str(directory / "library.h")]
+    linked = [*map(str, sorted(library.glob("*.o"))), *(["-llz4", "-lz"] if "--trace-fst" in features else [])]
+    if sys.platform == "darwin":
+        undefined = ("__Z15vl_time_stamp64v", "__Z13sc_time_stampv", "_vlog_startup_routines")
+        linked += [f"-Wl,-U,{symbol}" for symbol in undefined]
+    return [*command, "-I.", *flags], linked
 
 
 def _runtime(tool: Tool, parent: Path, features: Sequence[str]) -> tuple[Path, Path]:

@@ -134,24 +134,26 @@ def test_builds_once(tmp_path, own_models):
 
 def test_models_share_a_library(tmp_path, own_models, monkeypatch):
     """The library shared by Verilator's models is compiled once; another compiler flag needs no other library."""
-    libraries, runtime = [], simulator._runtime
+    libraries, compiler = [], simulator._compiler
 
-    def recorded(tool: Tool, parent: Path, features: Sequence[str]) -> tuple[Path, Path]:
+    def recorded(tool: Tool, parent: Path, *arguments: Sequence[str]) -> tuple[list[str], list[str]]:
         # Other tests and commands use the same library, so it is usually built already.
-        libraries.append(runtime(tool, BUILD / "model", features))
-        return libraries[-1]
+        command, library = compiler(tool, BUILD / "model", *arguments)
+        libraries.append((library, "-include" in command))
+        return command, library
 
-    monkeypatch.setattr(simulator, "_runtime", recorded)
-    quick = *VERILATOR_FLAGS, "-CFLAGS", "-O0"
-    for flags in (quick, (*quick, "-CFLAGS", "-DUNUSED")):
+    monkeypatch.setattr(simulator, "_compiler", recorded)
+    for flags in (VERILATOR_FLAGS, (*VERILATOR_FLAGS, "-CFLAGS", "-O0")):
         directory = build_model(TINY, build=tmp_path, flags=flags).directory
         assert (directory / "bench").exists()
-        assert list(directory.glob("verilated*.o")) == []
-    assert len(libraries) == 2
-    [(library, _)] = {*libraries}
-    assert (library / "verilated_vpi.o").exists()
-    assert list(library.glob("verilated_*_c.o")) == []
-    assert {path.name for path in directory.glob("*.o")} == {"fast.o", "slow.o", "main.o"}
+        assert list(directory.glob("*.o")) == []
+        # The compiler says if it cannot use the precompiled headers.
+        assert "invalid-pch" not in directory.with_suffix(".log").read_text()
+    [(library, precompiled), (other, not_precompiled)] = libraries
+    assert (precompiled, not_precompiled) == (True, False)
+    assert library == other
+    assert {Path(path).name for path in library} >= {"verilated.o", "verilated_vpi.o"}
+    assert [path for path in library if path.endswith("_c.o")] == []
 
 
 def test_a_feature_of_the_library_is_compiled_alone(tmp_path, own_models, monkeypatch):
@@ -204,9 +206,9 @@ def test_failed_build_does_not_count(tmp_path):
             build_model(TINY, "icarus", build=tmp_path, verilog=[broken])
 
 
-def test_environment_is_left_alone(tmp_path):
+def test_environment_is_left_alone():
     """A tool's environment variables are set only during its build."""
     before = dict(os.environ)
-    with simulator._building(Tool("icarus", "11", {"MAKEFLAGS": "-x"}), tmp_path, ()):
+    with simulator._building(Tool("icarus", "11", {"MAKEFLAGS": "-x"})):
         assert os.environ["MAKEFLAGS"] == "-x"
     assert dict(os.environ) == before
