@@ -88,9 +88,7 @@ class Chapter:
 
     def __add__(self, other: Chapter) -> Chapter:
         """Append another chapter."""
-        return Chapter(
-            self.sections + other.sections, self.alarms + other.alarms, self.summary + other.summary
-        )  # fmt: skip
+        return Chapter(*(mine + theirs for mine, theirs in zip(vars(self).values(), vars(other).values(), strict=True)))
 
 
 def write(page: Chapter, directory: Path) -> Path:
@@ -102,17 +100,12 @@ def write(page: Chapter, directory: Path) -> Path:
             plots.save(plot.figure, directory / f"{plot.name}.svg")
     (directory / "report.md").write_text(_markdown(page))
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    template = environment.from_string(TEMPLATE.read_text())
+    names = {
+        "title": TITLE, "page": page, "show": show, "svg": lambda name: _inline(directory, name),
+        "encoded": lambda data: base64.b64encode((directory / f"{data.name}.csv").read_bytes()).decode(),
+    }  # fmt: skip
     path = directory / "index.html"
-    path.write_text(
-        template.render(
-            title=TITLE,
-            page=page,
-            show=show,
-            svg=lambda name: _inline(directory, name),
-            encoded=lambda data: base64.b64encode((directory / f"{data.name}.csv").read_bytes()).decode(),
-        )
-    )
+    path.write_text(environment.from_string(TEMPLATE.read_text()).render(names))
     return path
 
 

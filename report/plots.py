@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import wraps
 from itertools import pairwise
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Any, ParamSpec
+from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
 import numpy as np
@@ -20,32 +19,28 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from raycaster.configuration import Rounding
-from raycaster.engines import ENGINES, EXACT, SEED
+from raycaster.engines import EXACT, SEED
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong, diff_picture
 from raycaster.golden.seed_engine import SeedModel
-from raycaster.report.hardware import Candidate
 from raycaster.report.points import Point, name_of
 from raycaster.screens import SCREENS
 
 if TYPE_CHECKING:
     from matplotlib.typing import RcKeyType
 
-P = ParamSpec("P")
+    from raycaster.report.designs import Candidate
 
 WIDTH = 4.6
 """Width in inches, a column of a printed page; 9-point text stays legible on a phone, at three quarters of the size."""
 
 STYLE: dict[RcKeyType, Any] = {
-    "font.size": 9,
-    "axes.titlesize": 9,
-    "legend.fontsize": 8,
-    "axes.grid": True,
-    "grid.alpha": 0.3,
-    "axes.axisbelow": True,
-    "svg.hashsalt": "raycaster",
-    "svg.fonttype": "none",
-}
+    "font.size": 9, "axes.titlesize": 9, "legend.fontsize": 8, "axes.grid": True, "grid.alpha": 0.3,
+    "axes.axisbelow": True, "svg.hashsalt": "raycaster", "svg.fonttype": "none",
+}  # fmt: skip
+styled = mpl.rc_context(STYLE)
+"""Decorator of functions that draw, so that they draw in the report's style."""
+
 LABEL_POINTS = 7.5
 
 VERMILION, BLUE, ORANGE, GREY = SEED.colour, EXACT.colour, "#E69F00", "#7f7f7f"
@@ -56,39 +51,28 @@ COLOURS = {"truncate": VERMILION, "nearest": BLUE}
 LEAST_SHARE = 1e-5
 """Lower limit for drawing a picture's share of wrong pixels: below one pixel, so smaller shares are drawn as 0."""
 
-LEAST_MEAN = 1e-4
-"""Lower limit for drawing mean shares; smaller ones are drawn as 0."""
-
 WORDS = {
-    "pixel_ns": "time per pixel, ns",
+    "frame_ms": "time per frame, ms",
+    "work": "cells x time per frame, LUT4 x s",
     "cells": "cells, ECP5 LUT4",
+    "simulated_s": "simulation time per frame, s",
     "error": "mean share of wrong pixels",
 }
+CLOCKED = "frame_ms", "work"
+"""Costs that depend on the clock."""
 
 
 def new_figure(height: float, rows: int = 1, columns: int = 1, **options) -> tuple[Figure, np.ndarray]:
     """Create an empty figure of a height in inches, and its axes (rows, columns)."""
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(WIDTH, height), layout="constrained")
-        FigureCanvasAgg(figure)  # provides the sizes of texts
-        return figure, figure.subplots(rows, columns, squeeze=False, **options)
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    FigureCanvasAgg(figure)  # provides the sizes of texts
+    return figure, figure.subplots(rows, columns, squeeze=False, **options)
 
 
+@styled
 def save(figure: Figure, path: Path) -> None:
     """Write a reproducible SVG, without a date."""
-    with mpl.rc_context(STYLE):
-        figure.savefig(path, metadata={"Date": None})
-
-
-def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Decorate a function that draws a figure, so that it draws in the report's style."""
-
-    @wraps(draw)
-    def drawn(*arguments: P.args, **options: P.kwargs) -> Figure:
-        with mpl.rc_context(STYLE):
-            return draw(*arguments, **options)
-
-    return drawn
+    figure.savefig(path, metadata={"Date": None})
 
 
 def _legend(figure: Figure, columns: int = 2, **options) -> None:
@@ -122,51 +106,52 @@ def _label(
 # Designs --------------------------------------------------------------------------------------------------------------
 
 
-def _value(one: Candidate, name: str) -> float:
-    value = getattr(one, name)
-    return max(value, LEAST_MEAN) if name == "error" else value
-
-
 @styled
-def designs(
-    every: Sequence[Candidate], across: str, up: str, frontier: Sequence[Candidate], labelled: Sequence[Candidate]
+def work_precision(
+    rounded: Sequence[Candidate], exact: Sequence[Candidate], cost: str, frontier: Sequence[Candidate]
 ) -> Figure:
-    """Plot all designs by two of `pixel_ns`, `cells` and `error`: filled if simulated and counted, small with culling.
+    """Plot error against a cost, a key of `WORDS`: designs that round above, a line per design without error below.
+
+    Hollow marks are at the clock that a monitor requires, filled ones at a routed clock or for costs without a clock;
+    grey dots are estimates; bars span the runs of a simulation.
 
     Args:
-        every: all designs.
-        across: attribute along x.
-        up: attribute along y.
-        frontier: designs for a line, ordered along x.
-        labelled: designs with a label.
+        rounded: designs that round.
+        exact: designs without error.
+        cost: attribute along x.
+        frontier: designs for a line and with labels, ordered along x; all have labels if it is empty.
     """
-    figure, [[axes]] = new_figure(4.2)
-    axes.set(xscale="log", yscale="log", xlabel=WORDS[across], ylabel=WORDS[up])
-
-    def places(some: Sequence[Candidate]) -> tuple[list[float], list[float]]:
-        return [_value(one, across) for one in some], [_value(one, up) for one in some]
-
-    for name, engine in ENGINES.items():
-        for found in (False, True):
-            dots = [one for one in every if one.config.engine == name and one.is_found == found]
-            if dots:
-                axes.scatter(
-                    *places(dots), marker=engine.marker, s=[10 if one.config.culling else 22 for one in dots],
-                    facecolors=engine.colour if found else "none", edgecolors=engine.colour, linewidths=0.8, zorder=3,
-                    alpha=1 if found else 0.45, label=name if found else f"{name}, estimated",
-                )  # fmt: skip
-    axes.step(*places(frontier), where="post", color=frontier[0].config.facts.colour, linewidth=0.9, alpha=0.7)
-    if up == "error":
-        _percent(axes, LEAST_MEAN)
-    else:
-        _ticks(axes.yaxis)
-    _ticks(axes.xaxis)
-    axes.margins(0.12)
-    _legend(figure, 3, handletextpad=0.2, columnspacing=1)
-    labels = [one.config.facts.label(one.config) for one in labelled]
-    _label(
-        axes, zip(*places(labelled), labels, strict=True), *places(every), expand=(1.15, 1.3), force_text=(0.3, 0.6)
-    )  # fmt: skip
+    below = 0.16 * len(exact)
+    figure, [[upper], [lower]] = new_figure(3.4 + below, 2, 1, sharex=True, height_ratios=(3, below))
+    for axes, every in ((upper, rounded), (lower, exact)):
+        ups = [one.error for one in every] if axes is upper else range(len(every))
+        for one, up in zip(every, ups, strict=True):
+            engine, across = one.config.facts, getattr(one, cost)
+            if one.is_found:
+                face = "white" if cost in CLOCKED and not one.is_routed else engine.colour
+                axes.plot(across, up, engine.marker, mfc=face, mec=engine.colour, ms=5, mew=0.8)
+                if cost == "simulated_s":
+                    axes.hlines(up, min(one.seconds), max(one.seconds), engine.colour)
+            elif cost != "simulated_s":
+                axes.plot(across, up, ".", color=GREY, ms=3, alpha=0.6)
+    upper.set(xscale="log", yscale="log", ylabel=WORDS["error"])
+    upper.margins(0.12)
+    _ticks(upper.yaxis, lambda share: f"{100 * share:g}%")
+    _ticks(lower.xaxis, "{:,.0f}".format if cost == "cells" else "{:g}".format)
+    lower.set(xlabel=WORDS[cost], ylabel="no error", ylim=(len(exact) - 0.4, -0.6))
+    names = [f"{one.config.engine} {one.config.facts.label(one.config)}" for one in exact]
+    lower.set_yticks(range(len(exact)), names, fontsize=LABEL_POINTS)
+    if frontier:
+        line = [getattr(one, cost) for one in frontier], [one.error for one in frontier]
+        upper.step(*line, where="post", color=frontier[0].config.facts.colour, linewidth=0.9, alpha=0.7)
+    shown = [one for one in rounded if one.is_found or cost != "simulated_s"]
+    xs, ys = [getattr(one, cost) for one in shown], [one.error for one in shown]
+    labels = [
+        (x, y, one.config.facts.label(one.config))
+        for x, y, one in zip(xs, ys, shown, strict=True)
+        if one in frontier or not frontier
+    ]
+    _label(upper, labels, xs, ys, expand=(1.15, 1.3), force_text=(0.3, 0.6))
     return figure
 
 
@@ -305,21 +290,18 @@ def pictures(rows: Sequence[Sequence[tuple[str, np.ndarray]]], height: float) ->
 def _drawn(point: Point) -> tuple[np.ndarray, np.ndarray]:
     """Return the seed engine's picture and the exact one."""
     models = SeedModel(point.config.fraction_bits, point.config.rounding), ExactModel()
-    rounded, perfect = (
-        model.render(point.scene, SCREENS["vga", 240], point.config.reflections) for model in models
-    )  # fmt: skip
+    rounded, perfect = (one.render(point.scene, SCREENS["vga", 240], point.config.reflections) for one in models)
     return rounded, perfect
 
 
 def wrong_by_scene(points: Sequence[Point]) -> Figure:
-    """Show the wrong pixels of each point."""
+    """Show the wrong pixels of each point, three in a row."""
     shown = []
     for point in points:
         rounded, perfect = _drawn(point)
         share = count_wrong(rounded, perfect) / perfect[..., 0].size
         shown.append((f"{name_of(point.what)}: {share:.2%}", diff_picture(rounded, perfect)))
-    columns = 3
-    return pictures([shown[at : at + columns] for at in range(0, len(shown), columns)], 1.35)
+    return pictures([shown[at : at + 3] for at in range(0, len(shown), 3)], 1.35)
 
 
 def flips(points: Sequence[Point]) -> Figure:
@@ -328,13 +310,9 @@ def flips(points: Sequence[Point]) -> Figure:
     for point in points:
         rounded, perfect = _drawn(point)
         name = fill(name_of(point.what).replace("_", " "), 18)  # no wider than the picture
-        rows.append(
-            [
-                (f"{name}\nF = {point.config.fraction_bits}, {point.config.rounding}", rounded),
-                ("exact", perfect),
-                (f"{count_wrong(rounded, perfect):,} wrong", diff_picture(rounded, perfect)),
-            ]
-        )
+        title = f"{name}\nF = {point.config.fraction_bits}, {point.config.rounding}"
+        wrong = f"{count_wrong(rounded, perfect):,} wrong", diff_picture(rounded, perfect)
+        rows.append([(title, rounded), ("exact", perfect), wrong])
     return pictures(rows, 1.45)
 
 
@@ -377,22 +355,4 @@ def waterfall(title: str, steps: Sequence[tuple[str, int]]) -> Figure:
     axes.xaxis.set_major_formatter("{x:,.0f}")
     axes.xaxis.set_major_locator(MaxNLocator(4))
     axes.grid(visible=False, axis="y")
-    return figure
-
-
-@styled
-def culling(by: Mapping[str, Mapping[str, float]]) -> Figure:
-    """Plot the cycles per frame with culling, relative to those without: one bar per engine and scene it can draw."""
-    scenes = sorted({name for of_engine in by.values() for name in of_engine}, reverse=True)
-    figure, [[axes]] = new_figure(1.0 + 0.34 * len(scenes))
-    height = 0.8 / len(by)
-    for place, (engine, of_engine) in enumerate(by.items()):
-        offsets = [scenes.index(name) + 0.4 - (place + 0.5) * height for name in of_engine]
-        shares = [100 * share for share in of_engine.values()]
-        bars = axes.barh(offsets, shares, height, label=engine, color=ENGINES[engine].colour)
-        axes.bar_label(bars, fmt="%.0f", padding=3, fontsize=LABEL_POINTS)
-    axes.axvline(100, color="black", linewidth=1)
-    axes.set(xlabel="cycles per frame with culling, % of those without", xlim=(0, 118))
-    axes.set_yticks(range(len(scenes)), scenes)
-    _legend(figure)
     return figure

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
@@ -21,7 +20,7 @@ from raycaster.configuration import LOOKS, Configuration, Rounding, configure
 from raycaster.convert.provenance import ROOT
 from raycaster.convert.take_home import TOP
 from raycaster.design import design_for
-from raycaster.digests import sources_digest, tools_digest
+from raycaster.digests import digest, sources_digest, tools_digest
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix, fixed_rectangle, with_camera
 from raycaster.fixed import FixedScene
@@ -35,6 +34,7 @@ from raycaster.golden.picture import wrong_pixels
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import Rectangles
+from raycaster.jobs import positive
 from raycaster.options import BUILD, add_configuration_options, as_options, given_options, run_command
 from raycaster.rtl.system import ray_caster
 from raycaster.scene import BASIS_SCALE, Scene, dump_scene, load_scene
@@ -58,7 +58,6 @@ RECTANGLES = 12
 GRID = 30, 40
 """Rows and columns of blocks in which the wrong pixels of a picture are counted."""
 
-FAMILY = FAMILIES["ecp5"]
 UNITS = {engine: unit.__name__ for engine, unit in ray_caster.UNITS.items()}
 """Name of the module that implements a unit, by engine."""
 
@@ -80,7 +79,9 @@ def scene_of(source: str) -> Scene:
     """
     kind, found, name = source.partition(":")
     if kind + found == SEED:
-        return _world(name)
+        if not name.isdecimal():
+            raise UserError(f"{source}: expected a whole number, 0 or more, as the seed")
+        return _world(int(name))
     if kind + found == CASE:
         if name not in _cases():
             raise UserError(f"{source}: no such case in the catalogue; choose one of {', '.join(_cases())}")
@@ -99,11 +100,8 @@ def _cases() -> dict[str, Scene]:
 
 
 @cache
-def _world(number: str) -> Scene:
-    if not number.isdecimal():
-        raise UserError(f"{SEED}{number}: expected a whole number, 0 or more, as the seed")
-    scene = random_scene(int(number), RECTANGLES, 0, ("materials", "patterns"))
-    return scene.model_copy(update={"rows": WORLD_ROWS})
+def _world(seed: int) -> Scene:
+    return random_scene(seed, RECTANGLES, 0, ("materials", "patterns")).model_copy(update={"rows": WORLD_ROWS})
 
 
 def exact_trace(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
@@ -141,16 +139,16 @@ class Point:
     """Source of the scene; for the kind cells a module, for the kind cases FIRST+COUNT."""
 
     config: Configuration
-    step: int = 0
-    """Step of the kind left."""
+    runs: int = 1
+    """Number of simulated frames of the kind time."""
 
     @property
     def arguments(self) -> str:
         """Arguments with which this module's command repeats the point."""
         named = KINDS[self.kind].options
         words = [f"--{name.replace('_', '-')} {getattr(self.config, name)}" for name in named]
-        step = [f"--step {self.step}"] if self.kind == "left" else []
-        return " ".join([self.kind, self.what, *(words or as_options(self.config)), *step])
+        runs = [f"--runs {self.runs}"] if self.runs > 1 else []
+        return " ".join([self.kind, self.what, *(words or as_options(self.config)), *runs])
 
     @property
     def command(self) -> str:
@@ -166,8 +164,7 @@ class Point:
     def fingerprint(self) -> str:
         """Digest of everything that the result depends on, to detect stale stored results."""
         scene = dump_scene(self.scene) if KINDS[self.kind].of_scene else ""
-        decides = _decides(KINDS[self.kind].sources)
-        return hashlib.sha256(repr((self.arguments, scene, *decides)).encode()).hexdigest()
+        return digest(self.arguments, scene, *_decides(KINDS[self.kind].sources))
 
     def compute(self) -> dict[str, Any]:
         """Compute the result, whose values JSON can represent."""
@@ -254,7 +251,7 @@ def _cells(point: Point) -> dict[str, Any]:
 
 def _counted(config: Configuration, top: str = TOP) -> dict[str, Any]:
     with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
-        area = measure(config, FAMILY, Path(scratch) / "area", top)
+        area = measure(config, FAMILIES["ecp5"], Path(scratch) / "area", top)
     return {"cells": area.tables, "registers": area.registers, "multipliers": area.multipliers}
 
 
@@ -268,19 +265,18 @@ def leaving_out(source: str, engine: str) -> Iterator[tuple[str, Configuration]]
     own = design_for(Path(source), {"engine": engine}).configuration
     options: dict[str, Any] = {
         "engine": engine, "rows": own.rows, "rectangles": max(RECTANGLES, len(scene.rect)), "allow_underrun": True,
-        "reflections": GENERAL_REFLECTIONS, "culling": False,
-        **dict.fromkeys(own.facts.looks, True),
+        "reflections": GENERAL_REFLECTIONS, "culling": False, **dict.fromkeys(own.facts.looks, True),
     }  # fmt: skip
-    yield "any scene", configure(**options)
-    for what, one in (
-        ("unused rectangles", {"rectangles": len(scene.rect)}),
-        ("unused reflections", {"reflections": scene.reflections}),
-        ("turned camera", {"turn": own.turn}),
-        ("mirror strengths", {"materials": own.materials}),
-        ("patterns", {"patterns": own.patterns}),
-        ("light", {"light": own.light}),
+    yield "", configure(**options)
+    for what, name, value in (
+        ("unused rectangles", "rectangles", len(scene.rect)),
+        ("unused reflections", "reflections", scene.reflections),
+        ("turned camera", "turn", own.turn),
+        ("mirror strengths", "materials", own.materials),
+        ("patterns", "patterns", own.patterns),
+        ("light", "light", own.light),
     ):
-        options |= one
+        options[name] = value
         yield what, configure(**options)
     every = (1 << len(scene.rect)) - 1
     passes = (every,) * (scene.reflections + 1)
@@ -292,30 +288,45 @@ def leaving_out(source: str, engine: str) -> Iterator[tuple[str, Configuration]]
 
 
 def _left(point: Point) -> dict[str, Any]:
-    """Count the ECP5 cells of a design after one of the steps of `leaving_out`."""
-    configs = [config for _, config in leaving_out(point.what, point.config.engine)]
-    return _counted(configs[point.step])
+    """Count the ECP5 cells of a design after each of the steps of `leaving_out`, with its units, cycles and clock."""
+    return {
+        "steps": [
+            {
+                "left_out": part, **_counted(config), "units": config.units, "cycles": predicted_cycles(config),
+                "clock_mhz": config.screen_geometry.clock_hz / 1e6,
+            }
+            for part, config in leaving_out(point.what, point.config.engine)
+        ]
+    }  # fmt: skip
+
+
+def predicted_cycles(config: Configuration) -> int:
+    """Predict the cycles per frame in the worst case, in which every group tests all rectangles.
+
+    An engine without a line buffer computes a pixel as often as the monitor shows it.
+    """
+    screen = config.screen_geometry
+    return config.group_cycles * config.groups * screen.rows * (1 if config.facts.line_buffered else screen.doubling**2)
 
 
 def _time(point: Point) -> dict[str, Any]:
-    """Simulate a frame of a scene, and compare it with the golden model.
+    """Simulate a frame of a scene, as often as the point says, and compare it with the golden model.
 
     Returns:
-        Cycles that the design's own counters report for the slowest group, the slowest row and the whole, wrong pixels,
-        and the seconds it took.
+        Cycles per frame that the design's own counter reports, wrong pixels, and the seconds that each run took.
     """
+    scene, model, results = dump_scene(point.scene), build_model(point.config), []
     with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
         file = Path(scratch) / "scene.toml"
-        file.write_text(dump_scene(point.scene))
+        file.write_text(scene)
         job = Job(point.config, scene=str(file), output=scratch, reflections=point.config.reflections)
-        run_bench(build_model(point.config), "raycaster.sim.frame_bench", job, Path(scratch))
-        result = json.loads((Path(scratch) / "result.json").read_text())
+        for _ in range(point.runs):
+            run_bench(model, "raycaster.sim.frame_bench", job, Path(scratch))
+            results.append(json.loads((Path(scratch) / "result.json").read_text()))
     return {
-        "group_cycles": result["worst_group_cycles"],
-        "row_cycles": result["worst_row_cycles"],
-        "frame_cycles": result["frame_cycles"],
-        "wrong": result["wrong_vs_golden"],
-        "seconds": result["sim_seconds"],
+        "frame_cycles": results[0]["frame_cycles"],
+        "wrong": sum(result["wrong_vs_golden"] for result in results),
+        "seconds": [result["sim_seconds"] for result in results],
     }
 
 
@@ -396,11 +407,11 @@ def parsed(argv: Sequence[str] | None = None) -> Point:
         "what",
         help=f"scene file, {CASE}NAME or {SEED}NUMBER; for the kind cells a module, for the kind cases FIRST+COUNT",
     )
-    parser.add_argument("--step", type=int, default=0, help="step of the kind left (default: %(default)s)")
+    parser.add_argument("--runs", type=positive, default=1, help="frames of the kind time (default: %(default)s)")
     add_configuration_options(parser)
     arguments = parser.parse_args(argv)
     untimed = {"allow_underrun": True} if arguments.kind in ("picture", "condition") else {}
-    return Point(arguments.kind, arguments.what, configure(**untimed | given_options(arguments)), arguments.step)
+    return Point(arguments.kind, arguments.what, configure(**untimed | given_options(arguments)), arguments.runs)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
