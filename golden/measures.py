@@ -33,14 +33,16 @@ from raycaster.scene import Scene
 NOISE = 1e-9
 """Relative forward error below which the rule is not checked, because the check itself is computed in float64."""
 
-ARITHMETICS: dict[str, Model] = {
-    "exact": ExactModel(),
+ROUNDING_MODELS: dict[str, SeedModel | RivalModel] = {
     "seed-0": SeedModel(),
+    "seed-4": SeedModel(4, "nearest"),
     "seed-8": SeedModel(8, "nearest"),
     **RIVALS,
 }
-"""Golden models to measure, by name. The beam engine's model is the exact one; the seed engine has F = 0, truncated,
-and F = 8, rounded to nearest."""
+"""Golden models that round, by name: the seed engine with F = 0, truncated, with 4 and 8, to nearest, and others."""
+
+ARITHMETICS: dict[str, Model] = {"exact": ExactModel(), **ROUNDING_MODELS}
+"""All golden models; the beam engine's is the exact one."""
 
 
 def relative_conditions(slopes: np.ndarray, perfect: Trace) -> tuple[np.ndarray, ...]:
@@ -84,11 +86,13 @@ def hit_errors(
     return _length(found - way) / _length(way), _length(found) / np.abs(height[:, 0]), sine
 
 
-def measures(model: Model, scene: Scene, slopes: np.ndarray, perfect: Trace, reflections: int) -> dict[str, Any]:
+def measures(
+    model: SeedModel | RivalModel, scene: Scene, slopes: np.ndarray, perfect: Trace, reflections: int
+) -> dict[str, Any]:
     """Compare a model's picture with the exact one.
 
     Args:
-        model: the model.
+        model: a model that rounds.
         scene: the scene.
         slopes: int (rows, columns, 3): slopes of the primary rays.
         perfect: exact trace of the rays, with this number of reflections.
@@ -97,13 +101,15 @@ def measures(model: Model, scene: Scene, slopes: np.ndarray, perfect: Trace, ref
     Returns:
         wrong: number of wrong pixels.
         flipped: number of rays that meet other rectangles than the exact ray.
-        never: those of them that no slope on the screen makes right.
-        off: those of them that are right nowhere within one pixel.
-        backward: the greatest finite backward error, in pixels, and backward_mean: the mean over all finite ones.
+        never: number of flipped rays that no slope on the screen makes right.
+        near, far: number of flipped rays whose backward error is more than 0.01 and 1 pixel, with those of never.
+        backward: the greatest finite backward error, in pixels; backward_mean: the mean of all finite ones.
         forward: the greatest error of a coordinate of a primary ray's hit point, in world units, among the rays that
             hit the right rectangle.
         of_bound: the greatest ratio of such an error to its derived bound; None for a turned camera, whose slopes are
             rounded too.
+        relative: relative forward error, condition number and relative backward error of the primary ray with the
+            greatest relative forward error; None if no ray hits.
         by_rule: the greatest ratio of a relative forward error to the product of condition number and backward error.
     """
     rectangles, camera = Rectangles.of_scene(scene), scene.camera.position
@@ -114,20 +120,21 @@ def measures(model: Model, scene: Scene, slopes: np.ndarray, perfect: Trace, ref
     hit = (perfect.winners[0] >= 0) & (traced.winners[0] == perfect.winners[0])
     points, right = (one.points[0][hit] / one.denominators[0][hit, None] for one in (traced, perfect))
     off = np.abs(points - right)
-    bound = np.zeros_like(off)
-    if isinstance(model, (SeedModel, RivalModel)):
-        bound = model.bound(np.array(camera, dtype=float), rays[hit].astype(float), right - camera)
-    forward, condition, backward = hit_errors(rectangles.axes[traced.winners[0][hit]], camera, rays[hit], points, right)
+    bound = model.bound(np.array(camera, dtype=float), rays[hit].astype(float), right - camera)
+    relative = hit_errors(rectangles.axes[traced.winners[0][hit]], np.array(camera), rays[hit], points, right)
+    forward, condition, backward = relative
     allowed = np.where(forward > NOISE, condition * backward, np.inf)
     return {
         "wrong": int((traced.colours != perfect.colours).any(axis=1).sum()),
         "flipped": int(np.any(np.array(traced.winners) != np.array(perfect.winners), axis=0).sum()),
         "never": int(np.isinf(errors).sum()),
-        "off": int((errors > 1).sum()),
-        "backward": float(finite.max()),
-        "backward_mean": float(finite.mean()),
+        "near": int((errors > 0.01).sum()),
+        "far": int((errors > 1).sum()),
+        "backward": float(finite.max(initial=0)),
+        "backward_mean": float(finite.sum() / max(len(finite), 1)),
         "forward": float(off.max(initial=0)),
         "of_bound": None if scene.camera.turned else float((off / np.where(bound > 0, bound, np.inf)).max(initial=0)),
+        "relative": [float(one[forward.argmax()]) for one in relative] if len(forward) else None,
         "by_rule": float((forward / allowed).max(initial=0)),
     }
 

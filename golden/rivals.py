@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from raycaster.golden.model import Meeting, Model
+from raycaster.golden.model import Meeting, Model, Trace
 from raycaster.golden.world import OTHER_AXES, Rectangles
 
 POINT_BITS = 30
@@ -196,24 +196,37 @@ class RivalModel(Model):
             within &= (low[u] <= place) & (place <= high[u])
         return t, within
 
-    def blocked(self, rectangles: Rectangles, points: np.ndarray, light: Sequence[int]) -> np.ndarray:
-        """Return which shadow rays, from points to a light, meet a rectangle.
+    def lit(
+        self, rectangles: Rectangles, camera: Sequence[int], slopes: np.ndarray, light: Sequence[int], exact: Trace
+    ) -> np.ndarray:
+        """Decide which hit points of primary rays the light reaches.
+
+        The rectangle that a ray hits and the side on which the light is are exact, so that only hit points and shadow
+        rays are rounded.
 
         Args:
             rectangles: the table.
-            points: numbers (3, rays).
+            camera: where the rays start, in world units.
+            slopes: int (rays, 3).
             light: position, in world units.
+            exact: exact trace of the rays, with the light.
 
         Returns:
             bool (rays,).
         """
-        way = self.numbers.plus(self.numbers.of(np.array(light))[:, None], -points)
-        start = self.epsilon / np.sqrt((way**2).sum(axis=0))
-        dark = np.zeros(points.shape[1], dtype=bool)
+        number, winner = self.numbers, exact.winners[0]
+        slope, eye = number.of(slopes.T), number.of(np.array(camera))
+        axis, rays = rectangles.axes[winner], np.arange(len(winner))
+        with np.errstate(invalid="ignore"):  # rays that hit nothing
+            t = number.over(number.plus(number.of(rectangles.low[winner, axis]), -eye[axis]), slope[axis, rays])
+            points = number.plus(eye[:, None], number.times(slope, t))
+            way = number.plus(number.of(np.array(light))[:, None], -points)
+            start = self.epsilon / np.sqrt((way**2).sum(axis=0))
+        lit = exact.shadings[0].facing.copy()
         for index in np.flatnonzero(rectangles.visible):
             t, within = self.crossed(rectangles, index, points, way)
-            dark |= within & (start < t) & (t < self.numbers.of(1))
-        return dark
+            lit &= ~(within & (start < t) & (t < number.of(1)))
+        return lit
 
 
 SINGLE = Float(24, 8, nearest=True)

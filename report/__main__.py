@@ -22,7 +22,7 @@ from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, Check, Outcome, Published, add_keep_option, keep, kept_outcome, table
 from raycaster.output import Console
-from raycaster.report.acne import shadow_chapter
+from raycaster.report.arithmetics import arithmetic_chapter
 from raycaster.report.designs import design_chapter, find_designs, of_kept, to_keep
 from raycaster.report.errors import REFLECTIONS, error_chapter, find_pictures
 from raycaster.report.extent import Extent, extent
@@ -74,7 +74,7 @@ def write_report(directory: Path, what: Extent, sweep: Sweep, command_line: str)
             design_chapter(designs, {key: Spread.of(found) for key, found in shares.items()}),
             error_chapter(pictures),
             stability,
-            shadow_chapter(what, scenes),
+            arithmetic_chapter(what, scenes, sweep),
             omission_chapter(what, scenes, sweep),
             Chapter([_method(what, command_line)]),
         ),
