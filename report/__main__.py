@@ -20,7 +20,7 @@ from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, Check, Outcome, Published, add_keep_option, keep, kept_outcome, table
 from raycaster.output import Console
-from raycaster.report.acne import shadow_chapter
+from raycaster.report.arithmetics import arithmetic_chapter
 from raycaster.report.designs import describe, design_chapter, find_designs, to_keep
 from raycaster.report.errors import REFLECTIONS, error_chapter, find_pictures
 from raycaster.report.extent import Extent, extent
@@ -69,7 +69,7 @@ def write_report(directory: Path, what: Extent, sweep: Sweep, command_line: str)
             design_chapter(designs, spreads),
             error_chapter(pictures),
             stability,
-            shadow_chapter(what, scenes),
+            arithmetic_chapter(what, scenes, sweep),
             omission_chapter(what, scenes, sweep),
             Chapter([_method(what, sweep, command_line)]),
         ),
@@ -109,7 +109,7 @@ def command_parser() -> CommandParser:
     parser.add_argument(
         "--output", type=Path, default=Path("build/report"), help="directory of the pages (default: %(default)s)"
     )
-    parser.add_argument("--quick", action="store_true", help="compute fewer points, in less than three minutes")
+    parser.add_argument("--quick", action="store_true", help="compute fewer points, in two minutes on two cores")
     add_job_options(parser, os.cpu_count() or 1)
     add_keep_option(parser)
     return parser

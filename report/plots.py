@@ -180,23 +180,6 @@ def shares(by: Mapping[Rounding, Mapping[int, Sequence[float]]]) -> Figure:
 
 
 @styled
-def likeness(of: Mapping[str, Mapping[str, Mapping[int, Sequence[float]]]]) -> Figure:
-    """Plot median and range of each measure, by rounding and fraction bits; values may be missing."""
-    figure, panels = new_figure(2.2 * len(of), len(of), 1, sharex=True)
-    for [axes], (measure, by) in zip(panels, of.items(), strict=True):
-        for rounding, colour in COLOURS.items():
-            found = {f: values for f, values in by[rounding].items() if len(values)}
-            low, middle, high = ([part(values) for values in found.values()] for part in (np.min, np.median, np.max))
-            axes.fill_between(list(found), low, high, color=colour, alpha=0.15, linewidth=0)
-            label = rounding if axes is panels[0, 0] else None
-            axes.plot(list(found), middle, marker="o", markersize=4, color=colour, label=label)
-        axes.set(ylabel=measure, xticks=list(by["truncate"]))
-    axes.set_xlabel("fraction bits F")
-    _legend(figure)
-    return figure
-
-
-@styled
 def by_depth(
     by: Mapping[str, Mapping[str, Sequence[float]]],
     lines: Mapping[str, Mapping[str, str]],
@@ -219,55 +202,6 @@ def by_depth(
     for axes in panels[:, 0]:
         axes.set_ylabel(up)
     _legend(figure, 2 if len(lines) % 2 == 0 else 3)
-    return figure
-
-
-@styled
-def falling(shares: Mapping[str, Mapping[int, float]], hits: Mapping[str, Mapping[int, float]]) -> Figure:
-    """Plot the mean share of wrong pixels and the mean error of primary hit points, by rounding and fraction bits."""
-    figure, [panels] = new_figure(3.0, 1, 2)
-    forms = (
-        (WORDS["error"], shares, lambda share: f"{100 * share:g}%"),
-        ("mean hit error, world units", hits, "{:g}".format),
-    )
-    for axes, (title, of, form) in zip(panels, forms, strict=True):
-        for rounding, colour in COLOURS.items():
-            label = rounding if axes is panels[0] else None
-            axes.plot(*zip(*of[rounding].items(), strict=True), "o-", markersize=4, color=colour, label=label)
-        axes.set(yscale="log", xlabel="F", xticks=list(of["truncate"]), title=title)
-        _ticks(axes.yaxis, form)
-    _legend(figure)
-    return figure
-
-
-@styled
-def by_reflections(by: Mapping[str, Mapping[int, Sequence[float]]]) -> Figure:
-    """Plot each packaged scene's share of wrong pixels and the mean of all, by rounding and reflections."""
-    figure, [[axes]] = new_figure(3.0)
-    for side, (rounding, of) in zip((-0.06, 0.06), by.items(), strict=True):
-        for place, values in of.items():
-            drawn = [max(value, LEAST_SHARE) for value in values]
-            axes.plot([place + side] * len(drawn), drawn, "o", color=COLOURS[rounding], markersize=3, alpha=0.5)
-        means = [np.mean(values) for values in of.values()]
-        axes.plot(list(of), means, color=COLOURS[rounding], label=f"{rounding}, mean")
-    axes.set(xlabel="reflections", ylabel="wrong pixels per scene", xticks=list(of))
-    _percent(axes, LEAST_SHARE)
-    _legend(figure)
-    return figure
-
-
-@styled
-def heat(by: Mapping[str, np.ndarray]) -> Figure:
-    """Plot the share of wrong pixels in each block of the picture over all worlds, by rounding."""
-    figure, panels = new_figure(2.9 * len(by), len(by), 1)
-    most = max(float(shares.max()) for shares in by.values())
-    for [axes], (rounding, blocks) in zip(panels, by.items(), strict=True):
-        image = axes.imshow(
-            100 * blocks, cmap="cividis", vmin=0, vmax=100 * most, extent=(0, 320, 240, 0), interpolation="nearest"
-        )
-        axes.set(title=rounding, xticks=(0, 160, 320), yticks=(0, 120, 240))
-        axes.grid(visible=False)
-    figure.colorbar(image, ax=panels, label="wrong pixels, %", shrink=0.7)
     return figure
 
 
@@ -327,7 +261,7 @@ def stiffness(cases: Mapping[str, tuple[float, float, float]], labelled: Sequenc
     axes.vlines(conditions, errors, bounds, color=GREY, linewidth=0.5, alpha=0.6)
     axes.scatter(conditions, bounds, marker="_", color=GREY, s=30, label="greatest bound")
     axes.scatter(conditions, errors, marker="o", color=BLUE, s=14, label="worst error", zorder=3)
-    axes.set(xscale="log", yscale="log", xlabel="condition number, world units per pixel", ylabel="world units")
+    axes.set(xscale="log", yscale="log", xlabel="relative condition number", ylabel="world units")
     axes.margins(0.2, 0.1)
     _legend(figure)
     labels = [(*cases[name][:2], name) for name in labelled]

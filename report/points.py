@@ -27,17 +27,20 @@ from raycaster.fixed import FixedScene
 from raycaster.fpga.cells import FAMILIES, measure
 from raycaster.golden.catalogue import catalogue
 from raycaster.golden.engines import model_of
-from raycaster.golden.errors import conditions, depth_errors
+from raycaster.golden.errors import depth_errors
 from raycaster.golden.exact import ExactModel
+from raycaster.golden.measures import ARITHMETICS, ROUNDING_MODELS, measures, relative_conditions
 from raycaster.golden.model import Model, Trace
 from raycaster.golden.picture import wrong_pixels
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import SeedModel
+from raycaster.golden.watertight import suite
 from raycaster.golden.world import Rectangles
 from raycaster.jobs import positive
 from raycaster.options import BUILD, add_configuration_options, as_options, given_options, run_command
+from raycaster.report.fixed_unit import fixed_unit, fixed_unit_cells
 from raycaster.rtl.system import ray_caster
-from raycaster.scene import BASIS_SCALE, Scene, dump_scene, load_scene
+from raycaster.scene import Scene, dump_scene, load_scene
 from raycaster.screens import SCREENS
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import SimulationError, build_model, run_bench, system_verilator
@@ -55,8 +58,8 @@ WORLD_ROWS = 120
 RECTANGLES = 12
 """Maximum number of rectangles in random worlds, and minimum in designs for any scene."""
 
-GRID = 30, 40
-"""Rows and columns of blocks in which the wrong pixels of a picture are counted."""
+SUITE_SEED, AIMED_RAYS = 1, 16_000
+"""Seed of the rays at shared edges, and their number per table, of which those with unsuitable slopes are left out."""
 
 UNITS = {engine: unit.__name__ for engine, unit in ray_caster.UNITS.items()}
 """Name of the module that implements a unit, by engine."""
@@ -104,25 +107,16 @@ def _world(seed: int) -> Scene:
     return random_scene(seed, RECTANGLES, 0, ("materials", "patterns")).model_copy(update={"rows": WORLD_ROWS})
 
 
-def exact_trace(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
-    """Return the slopes of a picture, int64 (rows, columns, 3), and its exact trace; cached for successive points."""
-    # Frozen models are hashable, but pydantic's types do not show it.
-    return _exact_trace(scene, screen, reflections)  # pyright: ignore[reportArgumentType]
-
-
 @lru_cache(maxsize=2)
-def _exact_trace(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
-    """Trace a picture.
+def exact_trace(scene: Any, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
+    """Return the slopes of a scene's picture, int64 (rows, columns, 3), and its exact trace; cached for successive use.
 
-    The screen is tiny or VGA; scenes of 180 rows, made for the beam engine, are drawn with 240.
+    The screen is tiny or VGA; scenes of 180 rows, made for the beam engine, are drawn with 240. Scenes are hashable,
+    but pydantic's types do not show it.
     """
     rows = 48 if screen == "tiny" else scene.rows if (screen, scene.rows) in SCREENS else 240
     slopes = primary_slopes(SCREENS[screen, rows], scene.camera.basis)
-    rectangles, rays = Rectangles.of_scene(scene), slopes.reshape(-1, 3)
-    perfect = ExactModel().trace(
-        rectangles, scene.camera.position, scene.background, rays, reflections, light=scene.light
-    )
-    return slopes, perfect
+    return slopes, _traced(ExactModel(), scene, slopes.reshape(-1, 3), reflections, light=scene.light)
 
 
 # Points ---------------------------------------------------------------------------------------------------------------
@@ -136,7 +130,7 @@ class Point:
     """Name in `KINDS`."""
 
     what: str
-    """Source of the scene; for the kind cells a module, for the kind cases FIRST+COUNT."""
+    """Source of the scene; for the kind cells a module, for cases FIRST+COUNT, for leaks ARITHMETIC+TABLES."""
 
     config: Configuration
     runs: int = 1
@@ -191,31 +185,31 @@ def _picture(point: Point) -> dict[str, Any]:
     """Compare the golden model's picture, under one arithmetic, with the exact picture.
 
     Returns:
-        Number and share of wrong pixels, and their number per block; PSNR in dB, None if no pixel is wrong; SSIM;
-        errors by depth of reflection, as in `raycaster.golden.errors.DepthErrors`.
+        Number and share of wrong pixels; PSNR in dB, None if no pixel is wrong; SSIM; errors by depth of reflection, as
+        in `raycaster.golden.errors.DepthErrors`.
     """
     config, scene = point.config, point.scene
     slopes, perfect = exact_trace(scene, config.screen, config.reflections)
-    rounded = _traced(SeedModel(config.fraction_bits, config.rounding), scene, slopes.reshape(-1, 3), config)
+    rounded = _traced(
+        SeedModel(config.fraction_bits, config.rounding), scene, slopes.reshape(-1, 3), config.reflections
+    )
     shown, right = (traced.colours.reshape(slopes.shape) for traced in (rounded, perfect))
     wrong = wrong_pixels(shown, right)
     count = int(wrong.sum())
     likeness = structural_similarity(right, shown, data_range=255, channel_axis=2)
-    where, *_ = np.histogram2d(*np.nonzero(wrong), bins=GRID, range=[(0, side) for side in wrong.shape])
     return {
         "pixels": wrong.size,
         "wrong": count,
         "wrong_share": count / wrong.size,
         "psnr": float(peak_signal_noise_ratio(right, shown, data_range=255)) if count else None,
         "ssim": float(likeness),  # pyright: ignore[reportArgumentType] a tuple only if more is requested
-        "where": where.astype(int).ravel().tolist(),
         "depths": _depths(scene, slopes, perfect, rounded, rounded.points, config),
     }
 
 
-def _traced(model: Model, scene: Scene, rays: np.ndarray, config: Configuration) -> Trace:
+def _traced(model: Model, scene: Scene, rays: np.ndarray, reflections: int, **options: Any) -> Trace:
     rectangles = Rectangles.of_scene(scene)
-    return model.trace(rectangles, scene.camera.position, scene.background, rays, config.reflections)
+    return model.trace(rectangles, scene.camera.position, scene.background, rays, reflections, **options)
 
 
 def _depths(
@@ -229,24 +223,51 @@ def _depths(
     return [asdict(depth) for depth in found]
 
 
-def _condition(point: Point) -> dict[str, Any]:
-    """Compute the distance that hits move per pixel of error in a ray; see `raycaster.golden.errors.conditions`.
+def _measures(point: Point) -> dict[str, Any]:
+    """Measure the errors of every arithmetic that can draw the scene, without its light.
 
     Returns:
-        Median and maximum over the hits of all depths, in world units per pixel; None without hits.
+        Number of pixels; median and maximum of the relative condition number over the hits of all depths, None without
+        hits; and by arithmetic, what `raycaster.golden.measures.measures` returns.
     """
-    scene, camera = point.scene, point.scene.camera
+    scene = point.scene.model_copy(update={"light": None})
     slopes, perfect = exact_trace(scene, point.config.screen, point.config.reflections)
-    found = conditions(Rectangles.of_scene(scene), camera.position, slopes.reshape(-1, 3), perfect)
-    # Slopes of a turned camera are in fractions of a pixel.
-    found = np.concatenate(found) * (BASIS_SCALE if camera.turned else 1)
+    found = np.concatenate(relative_conditions(slopes.reshape(-1, 3), perfect))
     found = found[~np.isnan(found)]
-    return {name: float(of(found)) if len(found) else None for name, of in (("median", np.median), ("worst", np.max))}
+    return {
+        "pixels": slopes[..., 0].size,
+        "median": float(np.median(found)) if len(found) else None,
+        "condition": float(np.max(found)) if len(found) else None,
+        "arithmetics": {
+            name: measures(model, scene, slopes, perfect, point.config.reflections)
+            for name, model in ROUNDING_MODELS.items()
+            if not scene.lacks(model.looks)
+        },
+    }
+
+
+def _leaks(point: Point) -> dict[str, Any]:
+    """Count the rays at shared edges, and those of them that leak, by kind of table.
+
+    Raises:
+        UserError: the arithmetic or the number of tables is malformed.
+    """
+    name, _, tables = point.what.partition("+")
+    if not (name in ARITHMETICS and tables.isdecimal()):
+        raise UserError(f"leaks: expected ARITHMETIC+TABLES, such as exact+20, got {point.what}")
+    model, found = ARITHMETICS[name], {}
+    for aimed in suite(SUITE_SEED, int(tables), AIMED_RAYS):
+        if not aimed.turned or "turn" in model.looks:
+            counts = found.setdefault(f"{aimed.kind}, {'turned' if aimed.turned else 'not turned'}", [0, 0])
+            leaks = aimed.leaks(model)
+            counts[0] += len(leaks)
+            counts[1] += int(leaks.sum())
+    return found
 
 
 def _cells(point: Point) -> dict[str, Any]:
-    """Count the ECP5 cells of a design, or of one of its modules on its own."""
-    return _counted(point.config, point.what)
+    """Count the ECP5 cells of a design, or of one of its modules or of `fixed_unit` on its own."""
+    return fixed_unit_cells() if point.what == fixed_unit.__name__ else _counted(point.config, point.what)
 
 
 def _counted(config: Configuration, top: str = TOP) -> dict[str, Any]:
@@ -355,7 +376,7 @@ def _hits(point: Point) -> dict[str, Any]:
     """Compute errors of hit points in the converted Verilog by depth, and the number unlike the golden model."""
     config, scene = point.config, point.scene
     slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
-    perfect, golden = (_traced(model, scene, slopes, config) for model in (ExactModel(), model_of(config)))
+    perfect, golden = (_traced(model, scene, slopes, config.reflections) for model in (ExactModel(), model_of(config)))
     with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
         points = hit_points(build_probed_model(config), scene, config.reflections, Path(scratch))
     different = 0
@@ -383,14 +404,15 @@ class Kind:
 
 
 _CORE = str(Path(raycaster.__path__[0]))
-_CELLS = "hdl", "rtl", _CORE, "convert", "fpga/cells.py", "fpga/hard_multiplier.v"
+_CELLS = "hdl", "rtl", _CORE, "convert", "fpga/cells.py", "fpga/hard_multiplier.v", "report/fixed_unit.py"
 _SIMULATIONS = "hdl", "rtl", _CORE, "golden", "convert", "sim"
 _CASES = *_SIMULATIONS, "verif/soak", "verif/campaign.py", "verif/random_scenes.py"
 KINDS = {
     "picture": Kind(
         _picture, ("golden", _CORE, "verif/random_scenes.py"), ("fraction_bits", "rounding", "reflections", "screen")
     ),
-    "condition": Kind(_condition, ("golden", _CORE), ("reflections", "screen")),
+    "measures": Kind(_measures, ("golden", _CORE, "verif/random_scenes.py"), ("reflections", "screen")),
+    "leaks": Kind(_leaks, ("golden",), of_scene=False),
     "cells": Kind(_cells, _CELLS, of_scene=False),
     "left": Kind(_left, (*_CELLS, "golden", "fit"), ("engine",)),
     "time": Kind(_time, _SIMULATIONS),
@@ -405,12 +427,13 @@ def parsed(argv: Sequence[str] | None = None) -> Point:
     parser.add_argument("kind", choices=KINDS)
     parser.add_argument(
         "what",
-        help=f"scene file, {CASE}NAME or {SEED}NUMBER; for the kind cells a module, for the kind cases FIRST+COUNT",
+        help=f"scene file, {CASE}NAME or {SEED}NUMBER; for the kind cells a module, for cases FIRST+COUNT, for leaks "
+        "ARITHMETIC+TABLES",
     )
     parser.add_argument("--runs", type=positive, default=1, help="frames of the kind time (default: %(default)s)")
     add_configuration_options(parser)
     arguments = parser.parse_args(argv)
-    untimed = {"allow_underrun": True} if arguments.kind in ("picture", "condition") else {}
+    untimed = {"allow_underrun": True} if arguments.kind in ("picture", "measures") else {}
     return Point(arguments.kind, arguments.what, configure(**untimed | given_options(arguments)), arguments.runs)
 
 

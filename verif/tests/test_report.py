@@ -44,7 +44,8 @@ TINY_PICTURE = picture("case:facing_x", 4, "nearest", 2, "tiny")
 POINTS = {
     "picture": TINY_PICTURE,
     "world": picture("seed:5", 0, "nearest", 1),
-    "condition": Point("condition", "case:turned", configure(reflections=2, screen="tiny", allow_underrun=True)),
+    "measures": Point("measures", "case:turned", configure(reflections=2, screen="tiny", allow_underrun=True)),
+    "leaks": Point("leaks", "float20+1", configure()),
     "cells": Point("cells", UNITS["seed"], SMALL),
     "cases": Point("cases", "7+2", configure(engine="exact", screen="tiny", reflections=2, allow_underrun=True)),
     "left": Point("left", CORNERS, configure(engine="exact")),
@@ -87,6 +88,7 @@ def test_a_command_prints_its_result(tmp_path):
         ("time nowhere.toml", "error: nowhere.toml: cannot be read"),
         ("picture seed:one", "error: seed:one: expected a whole number, 0 or more, as the seed"),
         ("cases all", "error: cases: expected FIRST+COUNT, such as 0+10, got all"),
+        ("leaks q18.15+1", "error: leaks: expected ARITHMETIC+TABLES, such as exact+20, got q18.15+1"),
         ("cells ray_unit --units 7", "error: units: 7 does not divide"),
         ("report", "error: scenes: contains no scene files; run this in the project directory"),
     ],
@@ -317,6 +319,7 @@ def test_a_small_report(tmp_path, monkeypatch):
 
     monkeypatch.setattr(points, "measure", cells)
     monkeypatch.setattr(designs, "RUNS", 2)
+    monkeypatch.setattr(points, "fixed_unit_cells", lambda: {"cells": 404, "registers": 208, "multipliers": 4})
     scenes = tmp_path / "scenes"
     scenes.mkdir()
     for name in ("corners", "mirror_room"):
@@ -337,7 +340,7 @@ def test_a_small_report(tmp_path, monkeypatch):
     again = designs.of_kept(json.loads(json.dumps(figures["designs"])))
     plots.save(designs.error_and_time(again), tmp_path / "again.svg")
     assert (tmp_path / "again.svg").read_text() == (tmp_path / "work_frame_ms.svg").read_text()
-    assert html.count("<figure") == html.count("<svg ") == 15
+    assert html.count("<figure") == html.count("<svg ") == 14
     assert (tmp_path / "report.md").stat().st_size and rows("catalogue")
     keys = "scene", "F", "rounding", "reflections"
     [one] = [row for row in rows("pictures") if [row[key] for key in keys] == ["corners", "4", "nearest", "1"]]

@@ -1,0 +1,316 @@
+# SPDX-License-Identifier: MIT
+"""Chapter on arithmetics: the engines' and other projects', by the same measures, and at shared edges and corners."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
+
+from raycaster.configuration import configure
+from raycaster.golden.measures import ARITHMETICS, NOISE, ROUNDING_MODELS
+from raycaster.golden.rivals import SINGLE, RivalModel
+from raycaster.golden.seed_engine import SeedModel
+from raycaster.golden.shadows import dim
+from raycaster.golden.world import Rectangles
+from raycaster.report import plots
+from raycaster.report.errors import REFLECTIONS
+from raycaster.report.extent import CASE_REFLECTIONS, Extent
+from raycaster.report.fixed_unit import fixed_unit
+from raycaster.report.page import Chapter, Data, Plot, Section, Table
+from raycaster.report.points import AIMED_RAYS, CASE, SEED, SUITE_SEED, Point, exact_trace, name_of, scene_of
+from raycaster.report.sweep import Sweep
+
+TITLES = {
+    "exact": "exact, beam", "seed-0": "seed, F = 0", "seed-4": "seed, F = 4", "seed-8": "seed, F = 8",
+    "q18.14": "Q18.14", "float20": "20-bit float", "single": "single", "single-epsilon": "single, epsilon",
+}  # fmt: skip
+
+EPSILONS = 0.0, 1e-5, 1e-3, 0.1, 1.0
+"""World units next to the hit point in which a shadow ray hits nothing."""
+
+SUITE_TABLES = 20
+"""Number of tables of each kind with shared edges: more than a million rays."""
+
+MARKS = {plots.BLUE: "o", plots.ORANGE: "s", plots.VERMILION: "^", plots.GREY: "D"}
+
+RULE_SLACK = 1e-6
+"""How much the check of the rule, in float64, may exceed 1."""
+
+LEAST = 1e-6
+"""Share below which shares are drawn as 0."""
+
+Panel = tuple[str, Mapping[str, Mapping[str, float]]]
+"""Title; values by series and arithmetic, shares if they are at most 1."""
+
+
+def case_measures(what: Extent) -> list[Point]:
+    """Return the points that measure the catalogue's cases."""
+    return [_measured(f"{CASE}{case.name}", CASE_REFLECTIONS, what.case_screen) for case in what.cases]
+
+
+def arithmetic_chapter(what: Extent, scenes: Sequence[str], sweep: Sweep) -> Chapter:
+    """Return the chapter."""
+    groups = {
+        "random worlds": [_measured(f"{SEED}{number}", REFLECTIONS, "vga") for number in range(what.worlds)],
+        "packaged scenes": [_measured(source, REFLECTIONS, "vga") for source in scenes],
+        "stiff cases": case_measures(what),
+    }
+    found = sweep("measures", [point for points in groups.values() for point in points])
+    first, of_rule, rule = _compared(groups, found, _units(sweep))
+    leaks, leaking = _watertight(what, sweep)
+    alarms = [f"{leaking} rays leak in exact arithmetic."] if leaking else []
+    alarms += [f"A forward error is {rule:.6f} times what condition and backward error allow."] * (
+        rule > 1 + RULE_SLACK
+    )
+    return Chapter([first, of_rule, leaks, *_shadows(what, scenes)], alarms)
+
+
+def _measured(source: str, reflections: int, screen: str) -> Point:
+    return Point("measures", source, configure(reflections=reflections, screen=screen, allow_underrun=True))
+
+
+def _units(sweep: Sweep) -> dict[str, tuple[Mapping[str, int], str]]:
+    """Return the cells of a unit of each arithmetic that has one, and the command that counts them."""
+    points = {"exact": Point("cells", "rect_tester", configure(engine="exact"))}
+    for name, model in ROUNDING_MODELS.items():
+        if isinstance(model, SeedModel):
+            config = configure(
+                fraction_bits=model.fraction_bits, rounding=model.rounding, divider_bits=1, allow_underrun=True
+            )
+            points[name] = Point("cells", "intersection_helper", config)
+    points["q18.14"] = Point("cells", fixed_unit.__name__, configure())
+    found = sweep("cells of arithmetic", list(points.values()))
+    return {name: (found[point], point.command) for name, point in points.items()}
+
+
+def _compared(
+    groups: Mapping[str, Sequence[Point]],
+    found: Mapping[Point, Mapping[str, Any]],
+    units: Mapping[str, tuple[Mapping[str, int], str]],
+) -> tuple[Section, Section, float]:
+    """Return the sections on errors and on the rule, and the greatest ratio of the rule."""
+    names = list(ROUNDING_MODELS)
+    keys = "wrong", "flipped", "near", "far", "never", "backward", "backward_mean", "forward", "of_bound", "by_rule"
+    rows = [
+        [name_of(point.what), arithmetic, found[point]["pixels"], *(of[key] for key in keys), point.command]
+        for points in groups.values() for point in points for arithmetic, of in found[point]["arithmetics"].items()
+    ]  # fmt: skip
+    every = Data("measures", ("scene", "arithmetic", "pixels", *keys, "command"), rows)
+    # Pictures that every arithmetic can draw.
+    common = {group: [found[p] for p in points if not p.scene.camera.turned] for group, points in groups.items()}
+    pixels = sum(one["pixels"] for of in common.values() for one in of)
+    flips = {"any": "flipped", "> 0.01 px": "near", "> 1 px": "far", "no slope": "never"}
+    shares, off = ({key: {"exact": 0.0} for key in of} for of in (common, flips))
+    table, means, worst = [], {}, {}
+    for name in names:
+        for group, of in common.items():
+            shares[group][name] = float(np.mean([one["arithmetics"][name]["wrong"] / one["pixels"] for one in of]))
+        of = [one["arithmetics"][name] for points in common.values() for one in points]
+        sizes = [one["pixels"] - one["arithmetics"][name]["never"] for points in common.values() for one in points]
+        means[name] = float(np.average([one["backward_mean"] for one in of], weights=sizes))
+        worst[name] = max(one["backward"] for one in of)
+        parts = [sum(one[key] for one in of) / pixels for key in flips.values()]
+        for label, part in zip(flips, parts, strict=True):
+            off[label][name] = part
+        most = [max(one[key] for one in of) for key in ("forward", "of_bound")]
+        cells = units.get(name, ({},))[0]
+        percent = [100 * part for part in (*(shares[group][name] for group in common), *parts)]
+        table.append(
+            [TITLES[name], *percent, means[name], worst[name], *most, cells.get("cells"), cells.get("multipliers")]
+        )
+    columns = (
+        "arithmetic", *(f"wrong pixels, {group}: mean, %" for group in common), "flipped rays, %",
+        *(f"backward error {label}, %" for label in list(flips)[1:]), "mean, px", "greatest, px",
+        "forward error: greatest, world units", "error / bound", "LUT4 of a unit", "multipliers",
+    )  # fmt: skip
+    cells = {name: of["cells"] for name, (of, _) in units.items()}
+    figure = _dots([("wrong pixels", shares), ("flipped rays", off), ("LUT4 of a unit", {"counted": cells})])
+    caption = (
+        "Wrong pixels; flipped rays, which meet something else, by their backward error; and cells of a unit. Marks at "
+        "the left end are 0; units of floats were not counted."
+    )
+    plot = Plot("arithmetics", caption, figure, Data("arithmetics", columns, table))
+    counted = Data(
+        "units", ("arithmetic", "LUT4", "registers", "multipliers", "command"),
+        [[TITLES[name], *of.values(), command] for name, (of, command) in units.items()],
+    )  # fmt: skip
+    text = (
+        "The number of wrong pixels is a discontinuous measure: an error of any size flips a pixel or does not. The "
+        "backward error of a ray is the least move of its slope, in pixels, for which it meets what was drawn, mirror "
+        "by mirror; it is 0 for a right ray, and a ray has none if no slope meets what was drawn. It is computed from "
+        "exact polygons on the screen, and is conservative: never too small. Golden models with the number formats of "
+        "other projects draw the same pictures, without lights: Q18.14 fixed point, truncated (HomebrewGPU); a float "
+        "with a sign, 6 bits of exponent and 13 stored bits of significand, truncated (Racing the Beam); and IEEE "
+        "single precision, without an epsilon and with one of 0.001 world units. These models compute t = n / e and "
+        "O + D t; slopes are not normalised and divisions are correctly truncated, which the projects' own hardware "
+        "does less accurately. The first two skip the mirror that a ray starts on. The bound of a float's hit point "
+        "follows from the unit roundoff u: |w| (2 u + u^2) for the way w from the origin, and twice u times the "
+        "greater operand for the sum. Means are over pictures whose camera is not turned, "
+        f"{sum(map(len, common.values()))} in all; measures.csv has the others too. A unit computes "
+        "a + b (c - d) / e, with one quotient bit per cycle; for the exact engine it is the test of a whole "
+        "rectangle, which replaces two units. Only these units were counted, not a whole ray tracer, and none for "
+        "floats: shifters and rounding for each operation would have to be designed first."
+    )
+    noisy = max(off["no slope"], key=lambda name: off["no slope"][name])
+    said = [
+        f"The greatest finite backward error is {worst['seed-0']:.3g} pixels for the seed engine with F = 0, and "
+        f"{worst['q18.14']:.3g} for Q18.14; the means over all rays are {means['seed-0']:.2g} and "
+        f"{means['q18.14']:.2g} pixels.",
+        f"Most rays without any right slope are in {TITLES[noisy]}: {off['no slope'][noisy]:.3%} of all, mostly "
+        "reflections in which a mirror hits itself.",
+    ]
+    return Section("Other arithmetic", text, said, [plot], [Table.of(plot.data)], [every, counted]), *_rule(
+        groups, found
+    )
+
+
+def _rule(groups: Mapping[str, Sequence[Point]], found: Mapping[Point, Mapping[str, Any]]) -> tuple[Section, float]:
+    """Return the section on forward error, condition and backward error, and the greatest ratio."""
+    rows = [
+        [name_of(point.what), TITLES[name], *of["relative"], of["by_rule"], point.command]
+        for point in groups["stiff cases"] for name, of in found[point]["arithmetics"].items() if of["relative"]
+    ]  # fmt: skip
+    greatest = max(of["by_rule"] for one in found.values() for of in one["arithmetics"].values())
+    columns = "case", "arithmetic", "relative forward error", "condition", "relative backward error", "greatest ratio"
+    data = Data("rule", (*columns, "command"), rows)
+    shown = {
+        name: [(row[3] * row[4], row[2]) for row in rows if row[1] == TITLES[name] and row[2] > NOISE]
+        for name in ("seed-0", "q18.14", "float20", "single")
+    }
+    text = (
+        "The relative forward error of a primary ray's hit point is its distance from the exact one, relative to the "
+        "exact one's distance from the camera; its relative backward error is the least relative change of the slope "
+        "that leads to the computed point. Forward error <= condition number x backward error, with the condition at "
+        "the computed point; by the law of sines this holds exactly, not only for small errors. Points that are off "
+        "their plane are moved onto it, along their ray."
+    )
+    said = [f"The greatest ratio of the two sides is {greatest:.6f}, over all hits with the right rectangle."]
+    caption = "The primary ray with the greatest relative forward error, for each stiff case. The line is the rule."
+    plot = Plot("rule", caption, _scatter(shown), data)
+    return Section("Forward error, condition and backward error", text, said, [plot]), greatest
+
+
+def _watertight(what: Extent, sweep: Sweep) -> tuple[Section, int]:
+    """Return the section on shared edges, and the number of leaks in exact arithmetic."""
+    tables = min(SUITE_TABLES, max(1, what.worlds // 10))
+    points = {name: Point("leaks", f"{name}+{tables}", configure()) for name in ARITHMETICS}
+    found = sweep("shared edges", list(points.values()))
+    rows = [
+        [TITLES[name], kind, rays, leaks, point.command]
+        for name, point in points.items() for kind, (rays, leaks) in found[point].items()
+    ]  # fmt: skip
+    data = Data("leaks", ("arithmetic", "rays at", "rays", "leaks", "command"), rows)
+    kinds = dict.fromkeys(kind.partition(",")[0] for _, kind, *_ in rows)
+    by: dict[str, dict[str, float]] = {kind: {} for kind in kinds}
+    for kind, of in by.items():
+        for name, point in points.items():
+            counts = np.sum([pair for other, pair in found[point].items() if other.partition(",")[0] == kind], axis=0)
+            of[name] = float(counts[1] / counts[0])
+    sums = {name: np.sum(list(found[point].values()), axis=0).tolist() for name, point in points.items()}
+    table = Data("leaks_by_arithmetic", ("arithmetic", "rays", "leaks"), [[TITLES[n], *of] for n, of in sums.items()])
+    text = (
+        "Rectangles are watertight if no ray passes between two that share an edge or a corner. Rays are aimed "
+        "exactly at shared edges and corners of tiled walls, stairs, closed rooms, and closed rooms seen in one of "
+        f"their walls, with slopes of 9 bits and those of turned cameras (seed {SUITE_SEED}, {tables} tables of each "
+        f"kind, up to {AIMED_RAYS:,} rays each). A leak is a ray that sees the background or a farther rectangle. The "
+        "seed engine is tested without turned cameras. Exact arithmetic has none, by count and by proof: a closed "
+        "rectangle contains its edges, and a cross-multiplied comparison of integers is exact. The proofs of "
+        "`rect_tester` and `ray_tester` in the manual show that the hardware makes this comparison."
+    )
+    said = [
+        f"Exact arithmetic, which the exact and beam engines share: {sums['exact'][1]:,} leaks in "
+        f"{sums['exact'][0]:,} rays.",
+        "Where a wall and a step meet in an outward edge, a truncated t is short of both, so Q18.14 and the 20-bit "
+        f"float leak {by['stairs']['q18.14']:.2%} of the rays at stairs. Rounding to nearest leaks in closed rooms "
+        f"too: {by['room']['single']:.3%} in single precision. Rounding to the seed engine's fractions never moves a "
+        "primary ray's point across a bound, which is an integer, so its leaks there come from depths that round to "
+        "the same number; reflected rays start at rounded points.",
+    ]
+    plot = Plot("leaks", "Share of leaking rays by kind of table; marks at the left end are 0.",
+                _dots([("share of leaking rays", by)]), data)  # fmt: skip
+    return Section("Shared edges and corners", text, said, [plot], [Table.of(table)]), sums["exact"][1]
+
+
+def _shadows(what: Extent, sources: Sequence[str]) -> list[Section]:
+    """Return the section on shadow rays in single precision; none if no scene has a light."""
+    groups = {name_of(source): [scene] for source in sources if (scene := scene_of(source)).light}
+    if not groups:
+        return []
+    stiff = [case.scene for case in what.cases if case.scene.light]
+    rows, worst = [], (-1, "", [])
+    for name, scenes in (groups | {f"{len(stiff)} stiff cases": stiff}).items():
+        counts = np.zeros((len(EPSILONS), 3), dtype=int)
+        for scene in scenes:
+            slopes, exact = exact_trace(scene, "vga", 0)
+            _, plain = exact_trace(scene.model_copy(update={"light": None}), "vga", 0)
+            shown = []
+            for place, epsilon in enumerate(EPSILONS):
+                lit, model = exact.shadings[0].lit, RivalModel(SINGLE, epsilon)
+                arguments = Rectangles.of_scene(scene), scene.camera.position, slopes.reshape(-1, 3)
+                found = model.lit(*arguments, scene.light.position, exact)
+                counts[place] += lit.sum(), (lit & ~found).sum(), (found & ~lit).sum()
+                colours = plain.colours.copy()
+                dim(colours, (exact.winners[0] >= 0) & ~found, scene.light)
+                shown.append((f"epsilon {epsilon:g}: {(lit != found).sum():,} wrong", colours.reshape(slopes.shape)))
+            shown = [("exact", exact.colours.reshape(slopes.shape)), shown[0], shown[-1]]
+            worst = max(worst, (int(counts[0, 1]) if name in groups else -1, name, shown), key=lambda one: one[0])
+        rows += [
+            [name, f"{epsilon:g}", *of.tolist(), int(of[1:].sum())]
+            for epsilon, of in zip(EPSILONS, counts, strict=True)
+        ]
+    totals = {epsilon: sum(row[-1] for row in rows if row[1] == f"{epsilon:g}") for epsilon in EPSILONS}
+    text = (
+        "A ray tracer in floats rounds the hit point to either side of its rectangle, whose own shadow may then fall "
+        "on it: shadow acne. The usual remedy is an epsilon, a distance from the point within which a shadow ray hits "
+        "nothing. One that is too small leaves the acne, and one that is too large removes true shadows. "
+        "Cross-multiplication rounds nothing and needs no epsilon. Here the hit points and shadow rays of primary rays "
+        "are computed in single precision, at 320x240; everything else is exact."
+    )
+    said = [
+        "Points in the wrong light by epsilon, in world units: "
+        + "; ".join(f"{total:,} with {epsilon:g}" for epsilon, total in totals.items())
+        + f". Without one, {worst[0]:,} lit points of {worst[1]} are dark. The exact engine has none."
+    ]
+    data = Data("shadows", ("scene", "epsilon", "lit points", "wrongly dark", "wrongly lit", "wrong"), rows)
+    caption = f"The primary rays of {worst[1]}: exact, and with shadow rays in single precision."
+    plot = Plot("shadows", caption, plots.pictures([worst[2]], 1.9), data)
+    return [Section("Shadows without an epsilon", text, said, [plot], [Table.of(data)])]
+
+
+@plots.styled
+def _dots(panels: Sequence[Panel]) -> Figure:
+    """Plot values by arithmetic, one panel per measure."""
+    figure, [columns] = plots.new_figure(3.3, 1, len(panels), sharey=True)
+    for axes, (title, series) in zip(columns, panels, strict=True):
+        is_share = max(value for values in series.values() for value in values.values()) <= 1
+        for (colour, mark), (label, values) in zip(MARKS.items(), series.items(), strict=False):
+            places, shown = [list(TITLES).index(name) for name in values], values.values()
+            axes.plot([max(one, LEAST) for one in shown], places, mark, color=colour, label=label, ms=4.5, alpha=0.8)
+        axes.set_xlabel(title)
+        if is_share:
+            axes.set(xscale="log", xlim=(LEAST / 2, 1))
+            axes.set_xticks([LEAST, 1e-4, 1e-2, 1], ["0", "0.01%", "1%", ""])
+            axes.xaxis.set_minor_locator(NullLocator())
+        else:
+            axes.set_xlim(0, None)
+        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), frameon=False, handletextpad=0.1, labelspacing=0.2)
+    columns[0].set_yticks(range(len(TITLES)), list(TITLES.values()))
+    columns[0].invert_yaxis()
+    return figure
+
+
+@plots.styled
+def _scatter(by: Mapping[str, Sequence[tuple[float, float]]]) -> Figure:
+    """Plot relative forward errors against what condition and backward error allow."""
+    figure, [[axes]] = plots.new_figure(3.6)
+    for (colour, mark), (name, places) in zip(MARKS.items(), by.items(), strict=True):
+        axes.plot(*zip(*places, strict=True), mark, color=colour, label=TITLES[name], ms=3.5, alpha=0.7)
+    ends = [least for places in by.values() for place in places for least in place]
+    axes.plot([min(ends), max(ends)], [min(ends), max(ends)], color="black", linewidth=0.8)
+    axes.set(xscale="log", yscale="log", xlabel="condition number x backward error", ylabel="forward error")
+    figure.legend(loc="outside upper center", ncols=4, handletextpad=0.1)
+    return figure
