@@ -35,12 +35,9 @@ def fixed_unit(clk, load, store, a, b, b_negative, c, d, e, e_negative, value):
         load: strobe; takes all operands except a.
         store: strobe, `STEPS` + 1 cycles after load.
         a: signed, 32 bits; read in the cycle after store.
-        b: unsigned, 32 bits, magnitude of b.
-        b_negative: flag, the sign of b.
-        c: signed, 32 bits.
-        d: signed, 32 bits.
-        e: unsigned, 32 bits, magnitude of e, not 0.
-        e_negative: flag, the sign of e.
+        b, e: unsigned, 32 bits, magnitudes; e is not 0.
+        b_negative, e_negative: flags, the signs of b and e.
+        c, d: signed, 32 bits.
         value: signed output, 32 bits; valid from the second cycle after store.
     """
     difference, away = signed(BITS + 1), unsigned(BITS)
@@ -103,9 +100,8 @@ def fixed_unit(clk, load, store, a, b, b_negative, c, d, e, e_negative, value):
 
 def fixed_unit_ports() -> dict[str, Any]:
     """Return signals for all ports of `fixed_unit`."""
-    flags = {name: bit() for name in ("clk", "load", "store", "b_negative", "e_negative")}
-    numbers = {name: signed(BITS) for name in ("a", "c", "d", "value")}
-    return flags | numbers | {"b": unsigned(BITS), "e": unsigned(BITS)}
+    numbers = {name: signed(BITS) for name in ("a", "c", "d", "value")} | {name: unsigned(BITS) for name in "be"}
+    return numbers | {name: bit() for name in ("clk", "load", "store", "b_negative", "e_negative")}
 
 
 def fixed_unit_cells() -> dict[str, int]:

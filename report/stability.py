@@ -4,20 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from typing import Any
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 from raycaster.golden.catalogue import catalogue
-from raycaster.golden.errors import compare
-from raycaster.golden.rays import primary_slopes
-from raycaster.golden.world import Rectangles
 from raycaster.report import plots
 from raycaster.report.arithmetics import case_measures
 from raycaster.report.errors import ROUNDINGS
 from raycaster.report.extent import CASE_REFLECTIONS, Extent
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
-from raycaster.report.points import CASE, Point, name_of, picture, scene_of
+from raycaster.report.points import CASE, Point, name_of, picture
 from raycaster.report.sweep import Sweep
 
 OF_SEED = ("materials", "patterns")
@@ -25,17 +21,6 @@ OF_SEED = ("materials", "patterns")
 
 SHARE = 12
 """Number of cases per simulation."""
-
-BOUNCES = 8
-GROWING = ("facing_y_40", "facing_z", "box_20", "box_off_centre", "corner_reflector", "box_in_box")
-"""Cases whose error is computed over all bounces."""
-
-GROWTH = {
-    "bound": {"color": plots.GREY, "linestyle": "--"},
-    "worst": {"color": plots.VERMILION, "marker": "o"},
-    "mean": {"color": plots.BLUE, "marker": "o"},
-}
-"""Errors of `raycaster.golden.errors.DepthErrors` that are plotted over all bounces, and their lines."""
 
 FLIPPED = 10
 """Number of cases whose pictures are shown."""
@@ -87,7 +72,7 @@ def stability_chapter(what: Extent, sweep: Sweep) -> tuple[Chapter, dict[str, in
         "all rays and reflections. The exact and beam engines are exact: they do not round, and have no error in any "
         "case. The seed engine's camera cannot turn."
     )
-    drawn = [_stiffness(pictures, conditions, first), _growth(), _flips(pictures)]
+    drawn = [_stiffness(pictures, conditions, first), _flips(pictures)]
     table = Table(Data("catalogue", (*COLUMNS, "strains", "command"), every), COLUMNS, of_page)
     sections = [
         Section("Stiff and extreme cases", text, said, drawn, [table]),
@@ -184,22 +169,6 @@ def _stiffness(pictures: Results, conditions: Conditions, first: int) -> Plot:
         f"{LEAST:g} are drawn at this value.",
         plots.stiffness(stiff, list(dict.fromkeys(labelled))),
         Data("stiffness", ("case", "condition", "worst error", "bound"), [[n, *values] for n, values in stiff.items()]),
-    )
-
-
-def _growth() -> Plot:
-    slopes = primary_slopes(configure(screen="tiny", allow_underrun=True).screen_geometry).reshape(-1, 3)
-    lines, rows = {}, []
-    for name in GROWING:
-        scene = scene_of(f"{CASE}{name}")
-        depths = compare(Rectangles.of_scene(scene), scene.camera.position, slopes, BOUNCES, 0, "truncate")
-        lines[name] = {kind: [asdict(depth)[kind] for depth in depths] for kind in GROWTH}
-        rows += [[name, bounces, one.mean, one.worst, one.bound] for bounces, one in enumerate(depths)]
-    return Plot(
-        "growth",
-        f"Errors and bounds over {BOUNCES} bounces in the golden model, with F = 0, truncated.",
-        plots.by_depth(lines, GROWTH, 5.6, "bounces", "world units"),
-        Data("growth", ("case", "bounces", "mean", "worst", "bound"), rows),
     )
 
 

@@ -544,12 +544,11 @@ def test_a_bound_that_is_exceeded_is_a_red_line(tmp_path, monkeypatch):
     """The bound is computed as if truncation were rounding to nearest; the labels of the plots do not touch."""
     right = golden_errors._next_bound
     monkeypatch.setattr(golden_errors, "_next_bound", lambda *arguments: right(*arguments[:-1], 1))
-    monkeypatch.setattr(stability, "GROWING", ("facing_x",))
     monkeypatch.setattr(stability, "FLIPPED", 1)
     cases = [case for case in catalogue() if case.name.startswith(("box", "facing", "grazing"))]
     sweep = sweep_of(tmp_path, lambda: ThreadPoolExecutor(1))
     chapter, _ = stability.stability_chapter(small_extent(cases, [], []), sweep)
-    assert [list(crowded(plot.figure)) for plot in chapter.sections[0].plots] == [[]] * 3
+    assert [list(crowded(plot.figure)) for plot in chapter.sections[0].plots] == [[]] * 2
     begins = "A bound is exceeded: box_20, F = 0, truncate. .venv/bin/python"
     assert any(alarm.startswith(begins) for alarm in chapter.alarms)
     assert not any("nearest" in alarm for alarm in chapter.alarms)
@@ -575,7 +574,6 @@ def test_a_small_report(tmp_path, monkeypatch):
     for name in ("corners", "mirror_room"):
         (scenes / f"{name}.toml").write_text(find_scene(name).read_text())
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(stability, "GROWING", ("facing_x",))
     cases = [*catalogue()[::20], *catalogue(("turn",))[-1:]]
     # Its rays hit at every depth.
     [facing] = [case for case in catalogue() if case.name == "facing_y_40"]
@@ -588,7 +586,7 @@ def test_a_small_report(tmp_path, monkeypatch):
     # The kept figures of the designs draw the same plot.
     plots.save(error_and_time(of_kept(json.loads(json.dumps(figures["designs"])))), tmp_path / "again.svg")
     assert (tmp_path / "again.svg").read_text() == (tmp_path / "work_precision.svg").read_text()
-    assert html.count("<figure") == html.count("<svg ") == 14
+    assert html.count("<figure") == html.count("<svg ") == 13
     assert (tmp_path / "report.md").stat().st_size and rows("catalogue") and rows("left")
     pictures = rows("pictures")
     assert len(pictures) == 2 * (6 * 3 + 2 * 2 * 3)
