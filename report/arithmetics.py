@@ -30,11 +30,8 @@ TITLES = {
 EPSILONS = 0.0, 1e-5, 1e-3, 0.1, 1.0
 """World units next to the hit point in which a shadow ray hits nothing."""
 
-SUITE_TABLES = 20
-"""Number of tables of each kind with shared edges: more than a million rays."""
-
-RULE_SLACK = 1e-6
-"""How much the check of the rule, in float64, may exceed 1."""
+SUITE_TABLES, RULE_SLACK = 20, 1e-6
+"""Tables of each kind with shared edges, for over a million rays; excess of the rule that float64 may cause."""
 
 
 Results = Mapping[Point, Mapping[str, Any]]
@@ -125,20 +122,20 @@ def _compared(
         Data("units", ("arithmetic", "LUT4", "registers", "multipliers", "command"), counted),
     ]
     text = (
-        "The number of wrong pixels is a discontinuous measure: an error of any size flips a pixel or does not. The "
-        "backward error of a ray is the least move of its slope, in pixels, for which it meets what was drawn, mirror "
-        "by mirror: 0 for a right ray, and none if no slope meets what was drawn. It is computed from exact polygons "
-        "on the screen, and is conservative: never too small. Golden models with the number formats of other projects "
-        "draw the same pictures, without lights: Q18.14 fixed point, truncated (HomebrewGPU); a float with a sign, 6 "
-        "bits of exponent and 13 stored bits of significand, truncated (Racing the Beam); and IEEE single precision, "
-        "without an epsilon and with one of 0.001 world units. They compute t = n / e and O + D t. The projects' own "
-        "hardware also normalises slopes and divides by reciprocals or tables, which adds errors. The first two skip "
-        "the mirror that a ray starts on. The bound of a float's hit point follows from the unit roundoff u: |w| (2 u "
-        "+ u^2) for the way w from the origin, and twice u times the greater operand for the sum. Figures are over "
-        f"the {len(every)} pictures whose camera is not turned; measures.csv has the others too. A unit computes "
-        "a + b (c - d) / e, with one quotient bit per cycle; for the exact engine it is the test of a whole rectangle, "
-        "which replaces two units. Nothing else of a ray tracer was counted, and no float unit, whose shifters and "
-        "roundings would have to be designed first."
+        "The number of wrong pixels is discontinuous: an error of any size flips a pixel or does not. The backward "
+        "error of a ray is the least move of its slope, in pixels, for which it meets what was drawn, mirror by "
+        "mirror: 0 for a right ray, and none if no slope does. It is computed from exact polygons on the screen, and "
+        "is conservative: never too small. Golden models with the number formats of other projects draw the same "
+        "pictures, without lights: Q18.14 fixed point, truncated (HomebrewGPU); a float with a sign, 6 bits of "
+        "exponent and 13 stored bits of significand, truncated (Racing the Beam); and IEEE single precision, without "
+        "an epsilon and with one of 0.001 world units. They compute t = n / e and O + D t; the projects' hardware "
+        "also normalises slopes and divides by reciprocals or tables, which adds errors. The first two skip the "
+        "mirror that a ray starts on. A float's hit point is off by at most |w| (2 u + u^2) for the way w from the "
+        "origin, with the unit roundoff u, and twice u times the greater operand of the sum. Figures are over the "
+        f"{len(every)} pictures whose camera is not turned; measures.csv has all. A unit computes a + b (c - d) / e, "
+        "with one quotient bit per cycle; the exact engine's is the test of a whole rectangle, which replaces two. "
+        "Nothing else of a ray tracer was counted, and no float unit, whose shifters and roundings would have to be "
+        "designed first."
     )
     noisy = max(off["no slope"], key=lambda name: off["no slope"][name])
     said = [
@@ -185,12 +182,11 @@ def _watertight(what: Extent, sweep: Sweep) -> tuple[Section, int]:
         for name, point in points.items() for kind, (rays, leaks) in found[point].items()
     ]  # fmt: skip
     data = Data("leaks", ("arithmetic", "rays at", "rays", "leaks", "command"), rows)
-    kinds = dict.fromkeys(kind.partition(",")[0] for _, kind, *_ in rows)
-    by: dict[str, dict[str, float]] = {kind: {} for kind in kinds}
-    for kind, of in by.items():
-        for name, point in points.items():
-            counts = np.sum([pair for other, pair in found[point].items() if other.partition(",")[0] == kind], axis=0)
-            of[name] = float(counts[1] / counts[0])
+    by: dict[str, dict[str, float]] = {kind.partition(",")[0]: {} for _, kind, *_ in rows}
+    for name, point in points.items():
+        for kind, of in by.items():
+            of_kind = [pair for tables, pair in found[point].items() if tables.partition(",")[0] == kind]
+            of[name] = sum(leaks for _, leaks in of_kind) / sum(rays for rays, _ in of_kind)
     sums = {name: np.sum(list(found[point].values()), axis=0).tolist() for name, point in points.items()}
     table = Data("leaks_by_arithmetic", ("arithmetic", "rays", "leaks"), [[TITLES[n], *of] for n, of in sums.items()])
     text = (
@@ -228,21 +224,17 @@ def _shadows(what: Extent, sources: Sequence[str]) -> list[Section]:
         for scene in scenes:
             slopes, exact = exact_trace(scene, "vga", 0)
             _, plain = exact_trace(scene.model_copy(update={"light": None}), "vga", 0)
-            shown = []
+            lit, shown = exact.shadings[0].lit, [("exact", exact.colours.reshape(slopes.shape))]
             for place, epsilon in enumerate(EPSILONS):
-                lit, model = exact.shadings[0].lit, RivalModel(SINGLE, epsilon)
                 arguments = Rectangles.of_scene(scene), scene.camera.position, slopes.reshape(-1, 3)
-                found = model.lit(*arguments, scene.light.position, exact)
+                found = RivalModel(SINGLE, epsilon).lit(*arguments, scene.light.position, exact)
                 counts[place] += lit.sum(), (lit & ~found).sum(), (found & ~lit).sum()
                 colours = plain.colours.copy()
                 dim(colours, (exact.winners[0] >= 0) & ~found, scene.light)
                 shown.append((f"epsilon {epsilon:g}: {(lit != found).sum():,} wrong", colours.reshape(slopes.shape)))
-            shown = [("exact", exact.colours.reshape(slopes.shape)), shown[0], shown[-1]]
             worst = max(worst, (int(counts[0, 1]) if name in groups else -1, name, shown), key=lambda one: one[0])
-        rows += [
-            [name, f"{epsilon:g}", *of.tolist(), int(of[1:].sum())]
-            for epsilon, of in zip(EPSILONS, counts, strict=True)
-        ]
+        for epsilon, of in zip(EPSILONS, counts.tolist(), strict=True):
+            rows.append([name, f"{epsilon:g}", *of, of[1] + of[2]])
     totals = {epsilon: sum(row[-1] for row in rows if row[1] == f"{epsilon:g}") for epsilon in EPSILONS}
     text = (
         "A ray tracer in floats rounds the hit point to either side of its rectangle, whose own shadow may then fall "
@@ -258,5 +250,5 @@ def _shadows(what: Extent, sources: Sequence[str]) -> list[Section]:
     ]
     data = Data("shadows", ("scene", "epsilon", "lit points", "wrongly dark", "wrongly lit", "wrong"), rows)
     caption = f"The primary rays of {worst[1]}: exact, and with shadow rays in single precision."
-    plot = Plot("shadows", caption, plots.pictures([worst[2]], 1.9), data)
+    plot = Plot("shadows", caption, plots.pictures([[worst[2][place] for place in (0, 1, -1)]], 1.9), data)
     return [Section("Shadows without an epsilon", text, said, [plot], [Table.of(data)])]

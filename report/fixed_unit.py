@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import json
 import tempfile
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +43,6 @@ def fixed_unit(clk, load, store, a, b, b_negative, c, d, e, e_negative, value):
     remainder, next_remainder, divisor, factor = (unsigned(BITS) for _ in range(4))
     dividend, digits, next_digits = (unsigned(STEPS) for _ in range(3))
     product = unsigned(2 * BITS)
-    way = signed(BITS + 1)
     total = signed(BITS + 2)
     negative, stored_negative = bit(), bit()
 
@@ -80,16 +78,13 @@ def fixed_unit(clk, load, store, a, b, b_negative, c, d, e, e_negative, value):
             product.next = factor * digits[BITS:]
             stored_negative.next = negative
 
-    @always_comb
-    def turn():
-        if stored_negative:
-            way.next = -product[BITS + FRACTION_BITS : FRACTION_BITS]
-        else:
-            way.next = product[BITS + FRACTION_BITS : FRACTION_BITS]
-
+    # The lower 32 bits do not depend on signs.
     @always_comb
     def add():
-        total.next = a + way
+        if stored_negative:
+            total.next = a - product[BITS + FRACTION_BITS : FRACTION_BITS]
+        else:
+            total.next = a + product[BITS + FRACTION_BITS : FRACTION_BITS]
 
     @always(clk.posedge)
     def deliver():
@@ -110,12 +105,11 @@ def fixed_unit_cells() -> dict[str, int]:
     Raises:
         ToolError: Yosys is missing, or reported an error.
     """
-    family, top = FAMILIES["ecp5"], "fixed_unit"
+    family, top = FAMILIES["ecp5"], fixed_unit.__name__
     with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
         directory = Path(scratch)
         modules = convert_hierarchy(elaborated(fixed_unit, **fixed_unit_ports()), directory, "")
         reads = [f"read_verilog {module.path.name}" for module in modules]
         run_yosys(directory, "synthesis", [*reads, f"{family.synthesis} -top {top} -json netlist.json"])
-        cells = json.loads((directory / "netlist.json").read_text())["modules"][top]["cells"]
-    area = asdict(family.count(cells))
-    return {"cells": area["tables"], "registers": area["registers"], "multipliers": area["multipliers"]}
+        area = family.count(json.loads((directory / "netlist.json").read_text())["modules"][top]["cells"])
+    return {"cells": area.tables, "registers": area.registers, "multipliers": area.multipliers}

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import wraps
 from itertools import pairwise
 from pathlib import Path
-from textwrap import fill
 from typing import TYPE_CHECKING, Any, ParamSpec
 
 import matplotlib as mpl
@@ -259,22 +258,6 @@ def wrong_by_scene(points: Sequence[Point]) -> Figure:
         shown.append((f"{name_of(point.what)}: {share:.2%}", diff_picture(rounded, perfect)))
     columns = 3
     return pictures([shown[at : at + columns] for at in range(0, len(shown), columns)], 1.35)
-
-
-def flips(points: Sequence[Point]) -> Figure:
-    """Show each point's picture, the exact picture and their difference."""
-    rows = []
-    for point in points:
-        rounded, perfect = _drawn(point)
-        name = fill(name_of(point.what).replace("_", " "), 18)  # no wider than the picture
-        rows.append(
-            [
-                (f"{name}\nF = {point.config.fraction_bits}, {point.config.rounding}", rounded),
-                ("exact", perfect),
-                (f"{count_wrong(rounded, perfect):,} wrong", diff_picture(rounded, perfect)),
-            ]
-        )
-    return pictures(rows, 1.45)
 
 
 # Stability and omissions ----------------------------------------------------------------------------------------------
