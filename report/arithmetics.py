@@ -7,8 +7,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.ticker import NullLocator
 
 from raycaster.configuration import configure
 from raycaster.golden.measures import ARITHMETICS, NOISE, ROUNDING_MODELS
@@ -32,19 +30,11 @@ TITLES = {
 EPSILONS = 0.0, 1e-5, 1e-3, 0.1, 1.0
 """World units next to the hit point in which a shadow ray hits nothing."""
 
-SUITE_TABLES = 20
-"""Number of tables of each kind with shared edges: more than a million rays."""
+SUITE_TABLES, RULE_SLACK = 20, 1e-6
+"""Tables of each kind with shared edges, for over a million rays; excess of the rule that float64 may cause."""
 
-MARKS = {plots.BLUE: "o", plots.ORANGE: "s", plots.VERMILION: "^", plots.GREY: "D"}
 
-RULE_SLACK = 1e-6
-"""How much the check of the rule, in float64, may exceed 1."""
-
-LEAST = 1e-6
-"""Share below which shares are drawn as 0."""
-
-Panel = tuple[str, Mapping[str, Mapping[str, float]]]
-"""Title; values by series and arithmetic, shares if they are at most 1."""
+Results = Mapping[Point, Mapping[str, Any]]
 
 
 def case_measures(what: Extent) -> list[Point]:
@@ -60,13 +50,13 @@ def arithmetic_chapter(what: Extent, scenes: Sequence[str], sweep: Sweep) -> Cha
         "stiff cases": case_measures(what),
     }
     found = sweep("measures", [point for points in groups.values() for point in points])
-    first, of_rule, rule = _compared(groups, found, _units(sweep))
+    sections = [_compared(groups, found, _units(sweep))]
+    rule, ratio = _rule({point: found[point] for point in groups["stiff cases"]})
     leaks, leaking = _watertight(what, sweep)
     alarms = [f"{leaking} rays leak in exact arithmetic."] if leaking else []
-    alarms += [f"A forward error is {rule:.6f} times what condition and backward error allow."] * (
-        rule > 1 + RULE_SLACK
-    )
-    return Chapter([first, of_rule, leaks, *_shadows(what, scenes)], alarms)
+    if ratio > 1 + RULE_SLACK:
+        alarms.append(f"A forward error is {ratio:.6f} times the product of condition number and backward error.")
+    return Chapter([*sections, rule, leaks, *_shadows(what, scenes)], alarms)
 
 
 def _measured(source: str, reflections: int, screen: str) -> Point:
@@ -78,107 +68,95 @@ def _units(sweep: Sweep) -> dict[str, tuple[Mapping[str, int], str]]:
     points = {"exact": Point("cells", "rect_tester", configure(engine="exact"))}
     for name, model in ROUNDING_MODELS.items():
         if isinstance(model, SeedModel):
-            config = configure(
-                fraction_bits=model.fraction_bits, rounding=model.rounding, divider_bits=1, allow_underrun=True
-            )
-            points[name] = Point("cells", "intersection_helper", config)
+            quotients = {"fraction_bits": model.fraction_bits, "rounding": model.rounding, "divider_bits": 1}
+            points[name] = Point("cells", "intersection_helper", configure(**quotients, allow_underrun=True))
     points["q18.14"] = Point("cells", fixed_unit.__name__, configure())
     found = sweep("cells of arithmetic", list(points.values()))
     return {name: (found[point], point.command) for name, point in points.items()}
 
 
 def _compared(
-    groups: Mapping[str, Sequence[Point]],
-    found: Mapping[Point, Mapping[str, Any]],
-    units: Mapping[str, tuple[Mapping[str, int], str]],
-) -> tuple[Section, Section, float]:
-    """Return the sections on errors and on the rule, and the greatest ratio of the rule."""
-    names = list(ROUNDING_MODELS)
+    groups: Mapping[str, Sequence[Point]], found: Results, units: Mapping[str, tuple[Mapping[str, int], str]]
+) -> Section:
     keys = "wrong", "flipped", "near", "far", "never", "backward", "backward_mean", "forward", "of_bound", "by_rule"
     rows = [
-        [name_of(point.what), arithmetic, found[point]["pixels"], *(of[key] for key in keys), point.command]
-        for points in groups.values() for point in points for arithmetic, of in found[point]["arithmetics"].items()
+        [name_of(point.what), arithmetic, one["pixels"], *(of[key] for key in keys), point.command]
+        for point, one in found.items() for arithmetic, of in one["arithmetics"].items()
     ]  # fmt: skip
-    every = Data("measures", ("scene", "arithmetic", "pixels", *keys, "command"), rows)
     # Pictures that every arithmetic can draw.
     common = {group: [found[p] for p in points if not p.scene.camera.turned] for group, points in groups.items()}
-    pixels = sum(one["pixels"] for of in common.values() for one in of)
+    every = [one for of in common.values() for one in of]
+    pixels = sum(one["pixels"] for one in every)
     flips = {"any": "flipped", "> 0.01 px": "near", "> 1 px": "far", "no slope": "never"}
-    shares, off = ({key: {"exact": 0.0} for key in of} for of in (common, flips))
-    table, means, worst = [], {}, {}
-    for name in names:
+    shares, off = ({key: {"exact": 0.0} for key in keys} for keys in (common, flips))
+    table, means = [], {}
+    for name, title in list(TITLES.items())[1:]:
         for group, of in common.items():
             shares[group][name] = float(np.mean([one["arithmetics"][name]["wrong"] / one["pixels"] for one in of]))
-        of = [one["arithmetics"][name] for points in common.values() for one in points]
-        sizes = [one["pixels"] - one["arithmetics"][name]["never"] for points in common.values() for one in points]
+        of = [one["arithmetics"][name] for one in every]
+        for label, key in flips.items():
+            off[label][name] = sum(one[key] for one in of) / pixels
+        sizes = [one["pixels"] - one["arithmetics"][name]["never"] for one in every]
         means[name] = float(np.average([one["backward_mean"] for one in of], weights=sizes))
-        worst[name] = max(one["backward"] for one in of)
-        parts = [sum(one[key] for one in of) / pixels for key in flips.values()]
-        for label, part in zip(flips, parts, strict=True):
-            off[label][name] = part
-        most = [max(one[key] for one in of) for key in ("forward", "of_bound")]
-        cells = units.get(name, ({},))[0]
-        percent = [100 * part for part in (*(shares[group][name] for group in common), *parts)]
-        table.append(
-            [TITLES[name], *percent, means[name], worst[name], *most, cells.get("cells"), cells.get("multipliers")]
-        )
+        percent = [100 * values[name] for values in (*shares.values(), *off.values())]
+        most = [max(one[key] for one in of) for key in ("backward", "forward", "of_bound")]
+        cells = units[name][0] if name in units else {}
+        table.append([title, *percent, means[name], *most, cells.get("cells"), cells.get("multipliers")])
     columns = (
         "arithmetic", *(f"wrong pixels, {group}: mean, %" for group in common), "flipped rays, %",
         *(f"backward error {label}, %" for label in list(flips)[1:]), "mean, px", "greatest, px",
         "forward error: greatest, world units", "error / bound", "LUT4 of a unit", "multipliers",
     )  # fmt: skip
     cells = {name: of["cells"] for name, (of, _) in units.items()}
-    figure = _dots([("wrong pixels", shares), ("flipped rays", off), ("LUT4 of a unit", {"counted": cells})])
+    figure = plots.by_arithmetic(
+        TITLES, [("wrong pixels", shares), ("flipped rays", off), ("LUT4 of a unit", {"counted": cells})]
+    )
     caption = (
         "Wrong pixels; flipped rays, which meet something else, by their backward error; and cells of a unit. Marks at "
         "the left end are 0; units of floats were not counted."
     )
     plot = Plot("arithmetics", caption, figure, Data("arithmetics", columns, table))
-    counted = Data(
-        "units", ("arithmetic", "LUT4", "registers", "multipliers", "command"),
-        [[TITLES[name], *of.values(), command] for name, (of, command) in units.items()],
-    )  # fmt: skip
+    counted = [[TITLES[name], *of.values(), command] for name, (of, command) in units.items()]
+    files = [
+        Data("measures", ("scene", "arithmetic", "pixels", *keys, "command"), rows),
+        Data("units", ("arithmetic", "LUT4", "registers", "multipliers", "command"), counted),
+    ]
     text = (
-        "The number of wrong pixels is a discontinuous measure: an error of any size flips a pixel or does not. The "
-        "backward error of a ray is the least move of its slope, in pixels, for which it meets what was drawn, mirror "
-        "by mirror; it is 0 for a right ray, and a ray has none if no slope meets what was drawn. It is computed from "
-        "exact polygons on the screen, and is conservative: never too small. Golden models with the number formats of "
-        "other projects draw the same pictures, without lights: Q18.14 fixed point, truncated (HomebrewGPU); a float "
-        "with a sign, 6 bits of exponent and 13 stored bits of significand, truncated (Racing the Beam); and IEEE "
-        "single precision, without an epsilon and with one of 0.001 world units. These models compute t = n / e and "
-        "O + D t; slopes are not normalised and divisions are correctly truncated, which the projects' own hardware "
-        "does less accurately. The first two skip the mirror that a ray starts on. The bound of a float's hit point "
-        "follows from the unit roundoff u: |w| (2 u + u^2) for the way w from the origin, and twice u times the "
-        "greater operand for the sum. Means are over pictures whose camera is not turned, "
-        f"{sum(map(len, common.values()))} in all; measures.csv has the others too. A unit computes "
-        "a + b (c - d) / e, with one quotient bit per cycle; for the exact engine it is the test of a whole "
-        "rectangle, which replaces two units. Only these units were counted, not a whole ray tracer, and none for "
-        "floats: shifters and rounding for each operation would have to be designed first."
+        "The number of wrong pixels is discontinuous: an error of any size flips a pixel or does not. The backward "
+        "error of a ray is the least move of its slope, in pixels, for which it meets what was drawn, mirror by "
+        "mirror: 0 for a right ray, and none if no slope does. It is computed from exact polygons on the screen, and "
+        "is conservative: never too small. Golden models with the number formats of other projects draw the same "
+        "pictures, without lights: Q18.14 fixed point, truncated (HomebrewGPU); a float with a sign, 6 bits of "
+        "exponent and 13 stored bits of significand, truncated (Racing the Beam); and IEEE single precision, without "
+        "an epsilon and with one of 0.001 world units. They compute t = n / e and O + D t; the projects' hardware "
+        "also normalises slopes and divides by reciprocals or tables, which adds errors. The first two skip the "
+        "mirror that a ray starts on. A float's hit point is off by at most |w| (2 u + u^2) for the way w from the "
+        "origin, with the unit roundoff u, and twice u times the greater operand of the sum. Figures are over the "
+        f"{len(every)} pictures whose camera is not turned; measures.csv has all. A unit computes a + b (c - d) / e, "
+        "with one quotient bit per cycle; the exact engine's is the test of a whole rectangle, which replaces two. "
+        "Nothing else of a ray tracer was counted, and no float unit, whose shifters and roundings would have to be "
+        "designed first."
     )
     noisy = max(off["no slope"], key=lambda name: off["no slope"][name])
     said = [
-        f"The greatest finite backward error is {worst['seed-0']:.3g} pixels for the seed engine with F = 0, and "
-        f"{worst['q18.14']:.3g} for Q18.14; the means over all rays are {means['seed-0']:.2g} and "
-        f"{means['q18.14']:.2g} pixels.",
+        f"The mean backward error of all rays is {means['seed-0']:.2g} pixels for the seed engine with F = 0, "
+        f"{means['q18.14']:.2g} for Q18.14 and {means['float20']:.2g} for the 20-bit float.",
         f"Most rays without any right slope are in {TITLES[noisy]}: {off['no slope'][noisy]:.3%} of all, mostly "
         "reflections in which a mirror hits itself.",
     ]
-    return Section("Other arithmetic", text, said, [plot], [Table.of(plot.data)], [every, counted]), *_rule(
-        groups, found
-    )
+    return Section("Other arithmetic", text, said, [plot], [Table.of(plot.data)], files)
 
 
-def _rule(groups: Mapping[str, Sequence[Point]], found: Mapping[Point, Mapping[str, Any]]) -> tuple[Section, float]:
+def _rule(found: Results) -> tuple[Section, float]:
     """Return the section on forward error, condition and backward error, and the greatest ratio."""
     rows = [
         [name_of(point.what), TITLES[name], *of["relative"], of["by_rule"], point.command]
-        for point in groups["stiff cases"] for name, of in found[point]["arithmetics"].items() if of["relative"]
+        for point, one in found.items() for name, of in one["arithmetics"].items() if of["relative"]
     ]  # fmt: skip
-    greatest = max(of["by_rule"] for one in found.values() for of in one["arithmetics"].values())
+    greatest = max(row[5] for row in rows)
     columns = "case", "arithmetic", "relative forward error", "condition", "relative backward error", "greatest ratio"
-    data = Data("rule", (*columns, "command"), rows)
     shown = {
-        name: [(row[3] * row[4], row[2]) for row in rows if row[1] == TITLES[name] and row[2] > NOISE]
+        TITLES[name]: [(row[3] * row[4], row[2]) for row in rows if row[1] == TITLES[name] and row[2] > NOISE]
         for name in ("seed-0", "q18.14", "float20", "single")
     }
     text = (
@@ -190,7 +168,7 @@ def _rule(groups: Mapping[str, Sequence[Point]], found: Mapping[Point, Mapping[s
     )
     said = [f"The greatest ratio of the two sides is {greatest:.6f}, over all hits with the right rectangle."]
     caption = "The primary ray with the greatest relative forward error, for each stiff case. The line is the rule."
-    plot = Plot("rule", caption, _scatter(shown), data)
+    plot = Plot("rule", caption, plots.rule(shown), Data("rule", (*columns, "command"), rows))
     return Section("Forward error, condition and backward error", text, said, [plot]), greatest
 
 
@@ -204,12 +182,11 @@ def _watertight(what: Extent, sweep: Sweep) -> tuple[Section, int]:
         for name, point in points.items() for kind, (rays, leaks) in found[point].items()
     ]  # fmt: skip
     data = Data("leaks", ("arithmetic", "rays at", "rays", "leaks", "command"), rows)
-    kinds = dict.fromkeys(kind.partition(",")[0] for _, kind, *_ in rows)
-    by: dict[str, dict[str, float]] = {kind: {} for kind in kinds}
-    for kind, of in by.items():
-        for name, point in points.items():
-            counts = np.sum([pair for other, pair in found[point].items() if other.partition(",")[0] == kind], axis=0)
-            of[name] = float(counts[1] / counts[0])
+    by: dict[str, dict[str, float]] = {kind.partition(",")[0]: {} for _, kind, *_ in rows}
+    for name, point in points.items():
+        for kind, of in by.items():
+            of_kind = [pair for tables, pair in found[point].items() if tables.partition(",")[0] == kind]
+            of[name] = sum(leaks for _, leaks in of_kind) / sum(rays for rays, _ in of_kind)
     sums = {name: np.sum(list(found[point].values()), axis=0).tolist() for name, point in points.items()}
     table = Data("leaks_by_arithmetic", ("arithmetic", "rays", "leaks"), [[TITLES[n], *of] for n, of in sums.items()])
     text = (
@@ -231,7 +208,7 @@ def _watertight(what: Extent, sweep: Sweep) -> tuple[Section, int]:
         "the same number; reflected rays start at rounded points.",
     ]
     plot = Plot("leaks", "Share of leaking rays by kind of table; marks at the left end are 0.",
-                _dots([("share of leaking rays", by)]), data)  # fmt: skip
+                plots.by_arithmetic(TITLES, [("share of leaking rays", by)]), data)  # fmt: skip
     return Section("Shared edges and corners", text, said, [plot], [Table.of(table)]), sums["exact"][1]
 
 
@@ -247,21 +224,17 @@ def _shadows(what: Extent, sources: Sequence[str]) -> list[Section]:
         for scene in scenes:
             slopes, exact = exact_trace(scene, "vga", 0)
             _, plain = exact_trace(scene.model_copy(update={"light": None}), "vga", 0)
-            shown = []
+            lit, shown = exact.shadings[0].lit, [("exact", exact.colours.reshape(slopes.shape))]
             for place, epsilon in enumerate(EPSILONS):
-                lit, model = exact.shadings[0].lit, RivalModel(SINGLE, epsilon)
                 arguments = Rectangles.of_scene(scene), scene.camera.position, slopes.reshape(-1, 3)
-                found = model.lit(*arguments, scene.light.position, exact)
+                found = RivalModel(SINGLE, epsilon).lit(*arguments, scene.light.position, exact)
                 counts[place] += lit.sum(), (lit & ~found).sum(), (found & ~lit).sum()
                 colours = plain.colours.copy()
                 dim(colours, (exact.winners[0] >= 0) & ~found, scene.light)
                 shown.append((f"epsilon {epsilon:g}: {(lit != found).sum():,} wrong", colours.reshape(slopes.shape)))
-            shown = [("exact", exact.colours.reshape(slopes.shape)), shown[0], shown[-1]]
             worst = max(worst, (int(counts[0, 1]) if name in groups else -1, name, shown), key=lambda one: one[0])
-        rows += [
-            [name, f"{epsilon:g}", *of.tolist(), int(of[1:].sum())]
-            for epsilon, of in zip(EPSILONS, counts, strict=True)
-        ]
+        for epsilon, of in zip(EPSILONS, counts.tolist(), strict=True):
+            rows.append([name, f"{epsilon:g}", *of, of[1] + of[2]])
     totals = {epsilon: sum(row[-1] for row in rows if row[1] == f"{epsilon:g}") for epsilon in EPSILONS}
     text = (
         "A ray tracer in floats rounds the hit point to either side of its rectangle, whose own shadow may then fall "
@@ -277,40 +250,5 @@ def _shadows(what: Extent, sources: Sequence[str]) -> list[Section]:
     ]
     data = Data("shadows", ("scene", "epsilon", "lit points", "wrongly dark", "wrongly lit", "wrong"), rows)
     caption = f"The primary rays of {worst[1]}: exact, and with shadow rays in single precision."
-    plot = Plot("shadows", caption, plots.pictures([worst[2]], 1.9), data)
+    plot = Plot("shadows", caption, plots.pictures([[worst[2][place] for place in (0, 1, -1)]], 1.9), data)
     return [Section("Shadows without an epsilon", text, said, [plot], [Table.of(data)])]
-
-
-@plots.styled
-def _dots(panels: Sequence[Panel]) -> Figure:
-    """Plot values by arithmetic, one panel per measure."""
-    figure, [columns] = plots.new_figure(3.3, 1, len(panels), sharey=True)
-    for axes, (title, series) in zip(columns, panels, strict=True):
-        is_share = max(value for values in series.values() for value in values.values()) <= 1
-        for (colour, mark), (label, values) in zip(MARKS.items(), series.items(), strict=False):
-            places, shown = [list(TITLES).index(name) for name in values], values.values()
-            axes.plot([max(one, LEAST) for one in shown], places, mark, color=colour, label=label, ms=4.5, alpha=0.8)
-        axes.set_xlabel(title)
-        if is_share:
-            axes.set(xscale="log", xlim=(LEAST / 2, 1))
-            axes.set_xticks([LEAST, 1e-4, 1e-2, 1], ["0", "0.01%", "1%", ""])
-            axes.xaxis.set_minor_locator(NullLocator())
-        else:
-            axes.set_xlim(0, None)
-        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), frameon=False, handletextpad=0.1, labelspacing=0.2)
-    columns[0].set_yticks(range(len(TITLES)), list(TITLES.values()))
-    columns[0].invert_yaxis()
-    return figure
-
-
-@plots.styled
-def _scatter(by: Mapping[str, Sequence[tuple[float, float]]]) -> Figure:
-    """Plot relative forward errors against what condition and backward error allow."""
-    figure, [[axes]] = plots.new_figure(3.6)
-    for (colour, mark), (name, places) in zip(MARKS.items(), by.items(), strict=True):
-        axes.plot(*zip(*places, strict=True), mark, color=colour, label=TITLES[name], ms=3.5, alpha=0.7)
-    ends = [least for places in by.values() for place in places for least in place]
-    axes.plot([min(ends), max(ends)], [min(ends), max(ends)], color="black", linewidth=0.8)
-    axes.set(xscale="log", yscale="log", xlabel="condition number x backward error", ylabel="forward error")
-    figure.legend(loc="outside upper center", ncols=4, handletextpad=0.1)
-    return figure

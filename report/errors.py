@@ -21,11 +21,8 @@ ROUNDINGS: tuple[Rounding, ...] = ("truncate", "nearest")
 REFLECTIONS = 1
 """Number of reflections in the pictures by which designs are compared."""
 
-FEW = 1e-3
-"""Share of wrong pixels that counts as few: one in a thousand."""
-
-EARLY = 4
-"""Fraction bits up to which wrong pixels come mostly from rounding, not from ties that no number of bits resolves."""
+FEW, EARLY = 1e-3, 4
+"""Share of wrong pixels that counts as few; fraction bits up to which most come from rounding, not from ties."""
 
 KINDS = {
     "greatest bound": {"color": plots.GREY, "linestyle": "--", "marker": "_"},
@@ -35,31 +32,28 @@ KINDS = {
 }
 """Errors by depth of reflection that are plotted, and their lines."""
 
+Found = Sequence[Mapping[str, Any]]
+
 
 @dataclass(frozen=True)
 class Pictures:
     """Every picture of random worlds and packaged scenes, whose sources are given."""
 
     what: Extent
-    worlds: Sequence[str]
-    scenes: Sequence[str]
+    worlds: list[str]
+    scenes: list[str]
     results: Mapping[Point, Mapping[str, Any]]
 
-    @property
-    def every(self) -> list[str]:
-        """Sources of all worlds and scenes."""
-        return [*self.worlds, *self.scenes]
-
-    def of(
-        self, sources: Sequence[str], f: int, r: Rounding, reflections: int = REFLECTIONS
-    ) -> list[Mapping[str, Any]]:
+    def of(self, sources: Sequence[str], f: int, r: Rounding, reflections: int = REFLECTIONS) -> Found:
         """Return the results for F and a rounding, one per source."""
         return [self.results[picture(source, f, r, reflections)] for source in sources]
 
     @property
     def all_shares(self) -> Mapping[Rounding, Mapping[int, list[float]]]:
         """Shares of wrong pixels of all worlds and scenes, by rounding and fraction bits."""
-        return {r: {f: _shares(self.of(self.every, f, r)) for f in self.what.fractions} for r in ROUNDINGS}
+        return {
+            r: {f: _shares(self.of(self.worlds + self.scenes, f, r)) for f in self.what.fractions} for r in ROUNDINGS
+        }
 
     @property
     def exceeded(self) -> int:
@@ -72,17 +66,12 @@ def find_pictures(what: Extent, scenes: Sequence[str], sweep: Sweep) -> Pictures
     worlds = [f"{SEED}{number}" for number in range(what.worlds)]
     shown = [scene for scene in scenes if not scene_of(scene).camera.turned]
     fewest, most = what.fractions[0], max(what.reflections)
-    points = [
-        picture(source, f, rounding, reflections)
-        for rounding in ROUNDINGS
-        for f in what.fractions
-        for sources, several in (
-            (worlds, {REFLECTIONS, most} if f == fewest else {REFLECTIONS}),
-            (shown, what.reflections if f == fewest else {REFLECTIONS}),
-        )
-        for source in sources
-        for reflections in several
-    ]
+    points = []
+    for r in ROUNDINGS:
+        for f in what.fractions:
+            of_worlds, of_scenes = ({REFLECTIONS, most}, what.reflections) if f == fewest else ([REFLECTIONS],) * 2
+            for sources, several in ((worlds, of_worlds), (shown, of_scenes)):
+                points += [picture(source, f, r, reflections) for source in sources for reflections in several]
     # Group the pictures of a scene, because they share the exact one, which is cached.
     points.sort(key=lambda point: (point.what, point.config.reflections))
     return Pictures(what, worlds, shown, sweep("pictures", points))
@@ -105,7 +94,7 @@ def error_chapter(pictures: Pictures) -> Chapter:
     return Chapter([distribution, trends], alarms, [first, second])
 
 
-def _shares(found: Sequence[Mapping]) -> list[float]:
+def _shares(found: Found) -> list[float]:
     return [one["wrong_share"] for one in found]
 
 
@@ -119,7 +108,7 @@ def _distribution(pictures: Pictures, every: Data) -> tuple[Section, str]:
     rows, said = [], []
     for r in ROUNDINGS:
         for f in fractions:
-            found = pictures.of(pictures.every, f, r)
+            found = pictures.of(worlds + pictures.scenes, f, r)
             some, all_scenes = (Spread.of(_shares(pictures.of(of, f, r))) for of in (worlds, pictures.scenes))
             shares = some.median, some.mean, some.most, all_scenes.least, all_scenes.median, all_scenes.most
             ssim, psnr = [one["ssim"] for one in found], [one["psnr"] for one in found if one["psnr"] is not None]
@@ -130,14 +119,11 @@ def _distribution(pictures: Pictures, every: Data) -> tuple[Section, str]:
         good = [f for f in medians if all(medians[more] <= FEW for more in medians if more >= f)]
         least = f"from F = {good[0]}" if good else f"for no F up to {max(medians)}"
         said.append(f"The median picture has at most {FEW:.1%} wrong pixels {least} (rounding: {r}).")
-    at_first, at_last = (
-        [f"{100 * share:.3g}%" for share in (found.median, found.mean, found.most)]
-        for found in (Spread.of(by["nearest"][f]) for f in (fractions[0], fractions[-1]))
-    )
+    low, high = (Spread.of(by["nearest"][f]) for f in (fractions[0], fractions[-1]))
     summary = (
-        f"With F = {fractions[0]}, rounding to nearest, the share of wrong pixels is {at_first[0]} in the median "
-        f"picture, {at_first[1]} on average and {at_first[2]} in the worst of {len(pictures.every)} pictures; with "
-        f"F = {fractions[-1]}, it is {at_last[0]}, {at_last[1]} and {at_last[2]}."
+        f"With F = {fractions[0]}, rounding to nearest, the share of wrong pixels is {low.median:.3%} in the median "
+        f"picture, {low.mean:.3%} on average and {low.most:.3%} in the worst picture; with "
+        f"F = {fractions[-1]}, it is {high.median:.3%}, {high.mean:.3%} and {high.most:.3%}."
     )
     text = (
         f"The seed engine's pictures are compared with exact arithmetic, with {REFLECTIONS} reflection, for "
@@ -161,13 +147,13 @@ def _trends(pictures: Pictures) -> tuple[Section, str]:
     """Show that errors fall with fraction bits and grow with reflections."""
     what, by = pictures.what, pictures.all_shares
     fractions, fewest, most = what.fractions, what.fractions[0], max(what.reflections)
-    early, depths = [f for f in fractions if f <= EARLY], range(most + 1)
+    every, early, depths = pictures.worlds + pictures.scenes, [f for f in fractions if f <= EARLY], range(most + 1)
     said, falls, grows, rows = [], {}, {}, {}
     for r in ROUNDINGS:
-        sums = [_sums(pictures.of(pictures.every, f, r), (0,)) for f in fractions]
+        sums = [_sums(pictures.of(every, f, r), (0,)) for f in fractions]
         falls[r] = slope(fractions, *(np.hstack(part) for part in zip(*sums, strict=True)), binary=True)
         pixels = slope(early, np.array([by[r][f] for f in early]).T, binary=True)
-        found = pictures.of(pictures.every, fewest, r, most)
+        found = pictures.of(every, fewest, r, most)
         rows[r] = [_depth_row(found, depth) for depth in depths]
         grows[r] = slope(list(depths), *_sums(found, depths))
         said += [
@@ -177,11 +163,8 @@ def _trends(pictures: Pictures) -> tuple[Section, str]:
             f"(rounding: {r}).",
         ]
     lines = {r: {kind: [row[kind] for row in rows[r]] for kind in KINDS} for r in ROUNDINGS}
-    depth_data = Data(
-        "hit_errors",
-        ("rounding", "reflections so far", *rows["truncate"][0]),
-        [[r, depth, *row.values()] for r in ROUNDINGS for depth, row in enumerate(rows[r])],
-    )
+    by_depth = [[r, depth, *row.values()] for r in ROUNDINGS for depth, row in enumerate(rows[r])]
+    data = Data("hit_errors", ("rounding", "reflections so far", *rows["truncate"][0]), by_depth)
     summary = (
         f"A hit point's mean error halves with each fraction bit (2 to the power of {falls['nearest']}) and grows by "
         f"{grows['nearest'].slope:.2g} world units with each reflection at F = {fewest} (nearest). In "
@@ -194,16 +177,15 @@ def _trends(pictures: Pictures) -> tuple[Section, str]:
         "(nearest). The bound holds for rays that hit the same rectangle as the exact ray; other rays are counted as "
         "flips. Intervals come from a bootstrap over pictures."
     )
-    drawn = [
-        Plot("hit_errors", f"Forward errors of hit points by reflections so far, with F = {fewest}, over all pictures, "
-             "and the greatest bound of any ray.",
-             plots.by_depth(lines, KINDS, 3.4, "reflections so far", "hit point error, world units"), depth_data),
-    ]  # fmt: skip
-    title = "Error against fraction bits and reflections"
-    return Section(title, text, said, drawn, [Table.of(depth_data)]), summary
+    caption = (
+        f"Forward errors of hit points by reflections so far, with F = {fewest}, and the greatest bound of any ray."
+    )
+    figure = plots.by_depth(lines, KINDS, 3.4, "reflections so far", "hit point error, world units")
+    title, plot = "Error against fraction bits and reflections", Plot("hit_errors", caption, figure, data)
+    return Section(title, text, said, [plot], [Table.of(data)]), summary
 
 
-def _sums(found: Sequence[Mapping], depths: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
+def _sums(found: Found, depths: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
     """Return the sum of the rays' errors and the number of rays, both (pictures, depths)."""
     means, counts = (
         np.array([[one["depths"][depth][name] for depth in depths] for one in found]) for name in ("mean", "rays")
@@ -211,7 +193,7 @@ def _sums(found: Sequence[Mapping], depths: Sequence[int]) -> tuple[np.ndarray, 
     return means * counts, counts
 
 
-def _depth_row(found: Sequence[Mapping], depth: int) -> dict[str, float]:
+def _depth_row(found: Found, depth: int) -> dict[str, float]:
     of = [one["depths"][depth] for one in found if one["depths"][depth]["rays"]]
     totals, counts = _sums(found, [depth])
     return {

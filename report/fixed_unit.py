@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import json
 import tempfile
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -35,19 +34,15 @@ def fixed_unit(clk, load, store, a, b, b_negative, c, d, e, e_negative, value):
         load: strobe; takes all operands except a.
         store: strobe, `STEPS` + 1 cycles after load.
         a: signed, 32 bits; read in the cycle after store.
-        b: unsigned, 32 bits, magnitude of b.
-        b_negative: flag, the sign of b.
-        c: signed, 32 bits.
-        d: signed, 32 bits.
-        e: unsigned, 32 bits, magnitude of e, not 0.
-        e_negative: flag, the sign of e.
+        b, e: unsigned, 32 bits, magnitudes; e is not 0.
+        b_negative, e_negative: flags, the signs of b and e.
+        c, d: signed, 32 bits.
         value: signed output, 32 bits; valid from the second cycle after store.
     """
     difference, away = signed(BITS + 1), unsigned(BITS)
     remainder, next_remainder, divisor, factor = (unsigned(BITS) for _ in range(4))
     dividend, digits, next_digits = (unsigned(STEPS) for _ in range(3))
     product = unsigned(2 * BITS)
-    way = signed(BITS + 1)
     total = signed(BITS + 2)
     negative, stored_negative = bit(), bit()
 
@@ -83,16 +78,13 @@ def fixed_unit(clk, load, store, a, b, b_negative, c, d, e, e_negative, value):
             product.next = factor * digits[BITS:]
             stored_negative.next = negative
 
-    @always_comb
-    def turn():
-        if stored_negative:
-            way.next = -product[BITS + FRACTION_BITS : FRACTION_BITS]
-        else:
-            way.next = product[BITS + FRACTION_BITS : FRACTION_BITS]
-
+    # The lower 32 bits do not depend on signs.
     @always_comb
     def add():
-        total.next = a + way
+        if stored_negative:
+            total.next = a - product[BITS + FRACTION_BITS : FRACTION_BITS]
+        else:
+            total.next = a + product[BITS + FRACTION_BITS : FRACTION_BITS]
 
     @always(clk.posedge)
     def deliver():
@@ -103,9 +95,8 @@ def fixed_unit(clk, load, store, a, b, b_negative, c, d, e, e_negative, value):
 
 def fixed_unit_ports() -> dict[str, Any]:
     """Return signals for all ports of `fixed_unit`."""
-    flags = {name: bit() for name in ("clk", "load", "store", "b_negative", "e_negative")}
-    numbers = {name: signed(BITS) for name in ("a", "c", "d", "value")}
-    return flags | numbers | {"b": unsigned(BITS), "e": unsigned(BITS)}
+    numbers = {name: signed(BITS) for name in ("a", "c", "d", "value")} | {name: unsigned(BITS) for name in "be"}
+    return numbers | {name: bit() for name in ("clk", "load", "store", "b_negative", "e_negative")}
 
 
 def fixed_unit_cells() -> dict[str, int]:
@@ -114,12 +105,11 @@ def fixed_unit_cells() -> dict[str, int]:
     Raises:
         ToolError: Yosys is missing, or reported an error.
     """
-    family, top = FAMILIES["ecp5"], "fixed_unit"
+    family, top = FAMILIES["ecp5"], fixed_unit.__name__
     with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
         directory = Path(scratch)
         modules = convert_hierarchy(elaborated(fixed_unit, **fixed_unit_ports()), directory, "")
         reads = [f"read_verilog {module.path.name}" for module in modules]
         run_yosys(directory, "synthesis", [*reads, f"{family.synthesis} -top {top} -json netlist.json"])
-        cells = json.loads((directory / "netlist.json").read_text())["modules"][top]["cells"]
-    area = asdict(family.count(cells))
-    return {"cells": area["tables"], "registers": area["registers"], "multipliers": area["multipliers"]}
+        area = family.count(json.loads((directory / "netlist.json").read_text())["modules"][top]["cells"])
+    return {"cells": area.tables, "registers": area.registers, "multipliers": area.multipliers}

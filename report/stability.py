@@ -4,20 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from typing import Any
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 from raycaster.golden.catalogue import catalogue
-from raycaster.golden.errors import compare
-from raycaster.golden.rays import primary_slopes
-from raycaster.golden.world import Rectangles
 from raycaster.report import plots
 from raycaster.report.arithmetics import case_measures
 from raycaster.report.errors import ROUNDINGS
 from raycaster.report.extent import CASE_REFLECTIONS, Extent
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
-from raycaster.report.points import CASE, Point, name_of, picture, scene_of
+from raycaster.report.points import CASE, Point, name_of, picture
 from raycaster.report.sweep import Sweep
 
 OF_SEED = ("materials", "patterns")
@@ -26,22 +22,8 @@ OF_SEED = ("materials", "patterns")
 SHARE = 12
 """Number of cases per simulation."""
 
-BOUNCES = 8
-GROWING = ("facing_y_40", "facing_z", "box_20", "box_off_centre", "corner_reflector", "box_in_box")
-"""Cases whose error is computed over all bounces."""
-
-GROWTH = {
-    "bound": {"color": plots.GREY, "linestyle": "--"},
-    "worst": {"color": plots.VERMILION, "marker": "o"},
-    "mean": {"color": plots.BLUE, "marker": "o"},
-}
-"""Errors of `raycaster.golden.errors.DepthErrors` that are plotted over all bounces, and their lines."""
-
-FLIPPED = 10
-"""Number of cases whose pictures are shown."""
-
-LABELLED = 6
-"""Number of labelled cases in the plot: half are the stiffest, half have the greatest error."""
+FLIPPED, LABELLED = 12, 6
+"""Number of cases whose pictures are shown; of labelled cases, half of them stiff and half with a great error."""
 
 LEAST = 0.1
 """Lower limit for drawing errors, in world units; smaller errors are drawn at this value."""
@@ -82,24 +64,17 @@ def stability_chapter(what: Extent, sweep: Sweep) -> tuple[Chapter, dict[str, in
     text = (
         "These scenes strain fixed-point arithmetic: grazed planes, corners, slits, points, facing mirrors, turned "
         "cameras, and patterns hit on the borders of their cells. The relative condition number of a hit is the "
-        "relative change of the hit point per relative change of the ray's slope, for small changes; it is one over "
-        "the cosine of the angle of incidence, and mirrors do not change it. A case's condition is the maximum over "
-        "all rays and reflections. The exact and beam engines are exact: they do not round, and have no error in any "
-        "case. The seed engine's camera cannot turn."
+        "relative change of the hit point per relative change of the slope, for small changes: one over the cosine of "
+        "the angle of incidence, in mirrors too. A case's condition is the maximum over all hits. The exact and beam "
+        "engines are exact: they never round. The seed engine's camera cannot turn. Hit points were read from the "
+        f"simulated ray units of {len(what.probed)} designs, with {len(what.probed_cases)} cases: hit_points.csv."
     )
-    drawn = [_stiffness(pictures, conditions, first), _growth(), _flips(pictures)]
+    drawn = [_stiffness(pictures, conditions, first), _flips(pictures)]
     table = Table(Data("catalogue", (*COLUMNS, "strains", "command"), every), COLUMNS, of_page)
-    sections = [
-        Section("Stiff and extreme cases", text, said, drawn, [table]),
-        Section(
-            "Hit points in the converted Verilog",
-            f"Read from the simulated ray units, for {len(what.probed_cases)} cases and {len(what.probed)} designs.",
-            tables=[Table.of(Data("hit_points", columns, seen), hidden=1)],
-        ),
-    ]
+    section = Section("Stiff and extreme cases", text, said, drawn, [table], [Data("hit_points", columns, seen)])
     different, over = (sum(one[name] for one in hits.values()) for name in ("different", "exceeded"))
     kept = {"stiff_cases": len(what.probed_cases), "unlike_golden": different, "over_bound": over}
-    return Chapter(sections, alarms, [summary]), kept
+    return Chapter([section], alarms, [summary]), kept
 
 
 def _shares(config: Configuration) -> list[Point]:
@@ -145,23 +120,18 @@ def _judged(
     wrong = sum(case["wrong"] for case in drawn)
     stiffest = max(conditions, key=lambda name: conditions[name] or 0)
     alarms = [f"A bound is exceeded: {words(one)}. {one.command}" for one in over]
-    if over_seen or different:
-        alarms.append(
-            f"In simulation, {different} hit points differ from the golden model, and {over_seen} coordinates exceed "
-            "their bound."
-        )
-    if wrong:
-        alarms.append(f"In simulation, {wrong} pixels of the catalogue's cases differ from the golden model.")
+    hardware = (
+        f"In simulation, {different} hit points of {len(hits)} frames differ from the golden model, {over_seen} "
+        f"coordinates exceed their bound, and {wrong} pixels of {len(drawn)} cases differ from exact arithmetic."
+    )
+    alarms += [hardware] if different or over_seen or wrong else []
     said = [
         f"The stiffest of {len(conditions)} cases is {stiffest}: a hit moves by up to {conditions[stiffest]:,.0f} "
         "times the relative error of its ray.",
         f"{len(over)} of the seed engine's {len(pictures)} pictures, for {len({one.what for one in pictures})} cases, "
         f"have a coordinate over its bound. The closest to its bound ({words(tightest)}) has {part:.2%} of it. The "
         f"most wrong pixels ({words(most)}) are {pictures[most]['wrong']:,} of {pictures[most]['pixels']:,}.",
-        f"In the seed engine's converted Verilog, {different} hit points of {len(hits)} frames differ from the golden "
-        f"model, and {over_seen} coordinates exceed their bound.",
-        f"The exact and beam engines drew {len(drawn)} cases in simulation; {wrong} pixels differ from exact "
-        "arithmetic.",
+        hardware,
     ]
     summary = (
         f"In {len(conditions)} stiff and extreme cases, {len(over)} bounds are exceeded, errors reach at most "
@@ -178,41 +148,21 @@ def _stiffness(pictures: Results, conditions: Conditions, first: int) -> Plot:
         if (point.config.fraction_bits, point.config.rounding) == (first, "truncate") and conditions[name]:
             stiff[name] = conditions[name], max(one["worst"], LEAST), max(one["bound"], LEAST)
     labelled = [name for place in (0, 1) for name in sorted(stiff, key=lambda one: -stiff[one][place])[: LABELLED // 2]]
-    return Plot(
-        "stiffness",
+    caption = (
         f"Condition number, worst error and greatest bound of each case, with F = {first}, truncated. Errors below "
-        f"{LEAST:g} are drawn at this value.",
-        plots.stiffness(stiff, list(dict.fromkeys(labelled))),
-        Data("stiffness", ("case", "condition", "worst error", "bound"), [[n, *values] for n, values in stiff.items()]),
+        f"{LEAST:g} are drawn at this value."
     )
-
-
-def _growth() -> Plot:
-    slopes = primary_slopes(configure(screen="tiny", allow_underrun=True).screen_geometry).reshape(-1, 3)
-    lines, rows = {}, []
-    for name in GROWING:
-        scene = scene_of(f"{CASE}{name}")
-        depths = compare(Rectangles.of_scene(scene), scene.camera.position, slopes, BOUNCES, 0, "truncate")
-        lines[name] = {kind: [asdict(depth)[kind] for depth in depths] for kind in GROWTH}
-        rows += [[name, bounces, one.mean, one.worst, one.bound] for bounces, one in enumerate(depths)]
-    return Plot(
-        "growth",
-        f"Errors and bounds over {BOUNCES} bounces in the golden model, with F = 0, truncated.",
-        plots.by_depth(lines, GROWTH, 5.6, "bounces", "world units"),
-        Data("growth", ("case", "bounces", "mean", "worst", "bound"), rows),
-    )
+    rows = [[name, *values] for name, values in stiff.items()]
+    data = Data("stiffness", ("case", "condition", "worst error", "bound"), rows)
+    return Plot("stiffness", caption, plots.stiffness(stiff, list(dict.fromkeys(labelled))), data)
 
 
 def _flips(pictures: Results) -> Plot:
-    by_case: dict[str, Point] = {}
+    worst: dict[str, Point] = {}
     for point in sorted(pictures, key=lambda point: -pictures[point]["wrong"]):
-        by_case.setdefault(point.what, point)
-    flipped = list(by_case.values())[:FLIPPED]
-    rows = [
-        [name_of(one.what), one.config.fraction_bits, one.config.rounding, pictures[one]["wrong"], one.command]
-        for one in flipped
-    ]
-    caption = "The cases with the most wrong pixels: the seed engine's picture, the exact one, and their difference."
-    return Plot(
-        "flips", caption, plots.flips(flipped), Data("flips", ("case", "F", "rounding", "wrong", "command"), rows)
+        worst.setdefault(point.what, point)
+    shown = list(worst.values())[:FLIPPED]
+    data = Data(
+        "flips", ("case", "wrong", "command"), [[name_of(p.what), pictures[p]["wrong"], p.command] for p in shown]
     )
+    return Plot("flips", "The cases with the most wrong pixels, in pink.", plots.wrong_by_scene(shown), data)

@@ -11,7 +11,7 @@ import pytest
 
 from raycaster.golden.backward import backward_errors
 from raycaster.golden.exact import ExactModel
-from raycaster.golden.measures import ARITHMETICS, hit_errors, measures, relative_conditions
+from raycaster.golden.measures import ROUNDING_MODELS, hit_errors, measures, relative_conditions
 from raycaster.golden.random_world import random_camera, random_rectangles, random_slopes
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.rivals import RIVALS, SINGLE, Fixed, Float, RivalModel
@@ -145,11 +145,11 @@ def test_forward_and_backward_errors_of_a_hit_by_hand():
 def test_errors_keep_the_rule_and_their_bounds(name):
     scene = load_scene(find_scene(name))
     perfect = ExactModel().trace(Rectangles.of_scene(scene), scene.camera.position, scene.background, RAYS, 2)
-    for arithmetic, model in ARITHMETICS.items():
+    for arithmetic, model in ROUNDING_MODELS.items():
         found = measures(model, scene, SLOPES, perfect, 2)
         assert found["by_rule"] <= 1 + 1e-6 and found["of_bound"] <= 1, arithmetic
-        assert (found["forward"] > 0) == (arithmetic != "exact"), arithmetic
-    assert found["never"] <= found["off"] <= found["flipped"]
+        assert found["never"] <= found["far"] <= found["near"] <= found["flipped"], arithmetic
+        assert found["forward"] > 0, arithmetic
 
 
 # Other projects' arithmetic -------------------------------------------------------------------------------------------

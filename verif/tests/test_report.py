@@ -293,12 +293,11 @@ def test_a_bound_that_is_exceeded_is_a_red_line(tmp_path, monkeypatch):
     """The bound is computed as if truncation were rounding to nearest; the labels of the plots do not touch."""
     right = golden_errors._next_bound
     monkeypatch.setattr(golden_errors, "_next_bound", lambda *arguments: right(*arguments[:-1], 1))
-    monkeypatch.setattr(stability, "GROWING", ("facing_x",))
     monkeypatch.setattr(stability, "FLIPPED", 1)
     cases = [case for case in catalogue() if case.name.startswith(("box", "facing", "grazing"))]
     sweep = sweep_of(tmp_path, lambda: ThreadPoolExecutor(1))
     chapter, _ = stability.stability_chapter(small_extent(cases, [], []), sweep)
-    assert [list(crowded(plot.figure)) for plot in chapter.sections[0].plots] == [[]] * 3
+    assert [list(crowded(plot.figure)) for plot in chapter.sections[0].plots] == [[]] * 2
     begins = "A bound is exceeded: box_20, F = 0, truncate. .venv/bin/python"
     assert any(alarm.startswith(begins) for alarm in chapter.alarms)
     assert not any("nearest" in alarm for alarm in chapter.alarms)
@@ -325,7 +324,6 @@ def test_a_small_report(tmp_path, monkeypatch):
     for name in ("corners", "mirror_room"):
         (scenes / f"{name}.toml").write_text(find_scene(name).read_text())
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(stability, "GROWING", ("facing_x",))
     cases = [*catalogue()[::20], *catalogue(("turn",))[-1:]]
     # Its rays hit at every depth.
     [facing] = [case for case in catalogue() if case.name == "facing_y_40"]
@@ -340,7 +338,7 @@ def test_a_small_report(tmp_path, monkeypatch):
     again = designs.of_kept(json.loads(json.dumps(figures["designs"])))
     plots.save(designs.error_and_time(again), tmp_path / "again.svg")
     assert (tmp_path / "again.svg").read_text() == (tmp_path / "work_frame_ms.svg").read_text()
-    assert html.count("<figure") == html.count("<svg ") == 14
+    assert html.count("<figure") == html.count("<svg ") == 13
     assert (tmp_path / "report.md").stat().st_size and rows("catalogue")
     keys = "scene", "F", "rounding", "reflections"
     [one] = [row for row in rows("pictures") if [row[key] for key in keys] == ["corners", "4", "nearest", "1"]]
