@@ -162,5 +162,5 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 1
     scope = {"quick": arguments.quick, "reflections": REFLECTIONS}
     keep(arguments, figures, scope, lambda _: _provenance(figures), "placing and routing")
-    console.print(f"{page}, with report.md, plots and CSV files next to it")
+    console.print(f"{page}, with plots and CSV files next to it")
     return 0

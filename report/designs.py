@@ -140,9 +140,7 @@ def seed_designs(fractions: Iterable[int], units: Iterable[int], screen: str = "
     """
     names = "fraction_bits", "units", "rounding", "divider_bits"
     choices = itertools.product(fractions, units, ("truncate", "nearest"), (1, 2, 3))
-    return _possible(
-        {"screen": screen, "culling": False, **dict(zip(names, choice, strict=True))} for choice in choices
-    )
+    return _possible(screen, ({"culling": False, **dict(zip(names, choice, strict=True))} for choice in choices))
 
 
 def exact_designs(units: Iterable[int], screen: str = "vga") -> list[Configuration]:
@@ -151,15 +149,15 @@ def exact_designs(units: Iterable[int], screen: str = "vga") -> list[Configurati
     The beam engine has just one for screens other than VGA.
     """
     beams = BEAMS if screen == "vga" else [{}]
-    exacts = ({"engine": "exact", "units": count, "screen": screen} for count in units)
-    return _possible([*exacts, *({"engine": "beam", "screen": screen, **one} for one in beams)])
+    exacts = ({"engine": "exact", "units": count} for count in units)
+    return _possible(screen, [*exacts, *({"engine": "beam", **one} for one in beams)])
 
 
-def _possible(choices: Iterable[Mapping[str, Any]]) -> list[Configuration]:
+def _possible(screen: str, choices: Iterable[Mapping[str, Any]]) -> list[Configuration]:
     found = []
     for choice in choices:
         with suppress(ConfigurationError):
-            found.append(configure(**choice))
+            found.append(configure(screen=screen, **choice))
     return found
 
 
@@ -170,12 +168,11 @@ def frontier(candidates: Sequence[Candidate], *measures: str) -> list[Candidate]
     """
     values = {one: tuple(getattr(one, name) for name in measures) for one in candidates}
 
-    def dominated(mine: tuple[float, ...]) -> bool:
-        return any(
-            theirs != mine and all(a <= b for a, b in zip(theirs, mine, strict=True)) for theirs in values.values()
-        )
+    def dominates(theirs: tuple[float, ...], mine: tuple[float, ...]) -> bool:
+        return theirs != mine and all(a <= b for a, b in zip(theirs, mine, strict=True))
 
-    return sorted((one for one in candidates if not dominated(values[one])), key=values.__getitem__)
+    best = (one for one, mine in values.items() if not any(dominates(theirs, mine) for theirs in values.values()))
+    return sorted(best, key=values.__getitem__)
 
 
 @cache
@@ -212,20 +209,14 @@ def describe(config: Configuration) -> str:
 
 def to_keep(found: Designs) -> list[dict[str, Any]]:
     """Return a row per design with the figures for the manual's table and plot, and the non-default options."""
+    best = found.best
     return [
         {
             "design": describe(one.config),
-            "options": {
-                name: value
-                for name, option in OPTIONS.items()
-                if (value := getattr(one.config, name)) != option.default
-            },
-            "luts": one.cells,
-            "frame_cycles": one.frame_cycles,
+            "options": {k: v for k, option in OPTIONS.items() if (v := getattr(one.config, k)) != option.default},
+            "luts": one.cells, "frame_cycles": one.frame_cycles,
             "frame_ms": one.frame_cycles / required_mhz(one.config) / 1000,
-            "wrong_share": one.error,
-            "found": one.is_found,
-            "best": one in found.best,
+            "wrong_share": one.error, "found": one.is_found, "best": one in best,
         }
         for one in found.every
     ]  # fmt: skip
@@ -299,6 +290,8 @@ COLUMNS = (
     "cycles per frame", "clock, MHz", "clock", "ms per frame", "LUT4 x s", "simulation: median, s", "minimum, s",
     "maximum, s", "pixels unlike the model", "command",
 )  # fmt: skip
+SHOWN = 0, 1, 3, 4, 7, 8, 9, 10, 11, 12, 13
+"""Columns on the page."""
 
 
 def design_chapter(found: Designs, spreads: Spreads) -> Chapter:
@@ -307,7 +300,7 @@ def design_chapter(found: Designs, spreads: Spreads) -> Chapter:
     shown = [one for one in [*exact, *rounded] if one.is_found]
     estimates = [one for one in rounded if not one.is_found]
     data = Data("designs", COLUMNS, [_row(one, spreads) for one in [*shown, *estimates]])
-    table = Table(data, COLUMNS[:-1], [row[:-1] for row in data.rows[: len(shown)]])
+    table = Table(data, [COLUMNS[at] for at in SHOWN], [[row[at] for at in SHOWN] for row in data.rows[: len(shown)]])
     sums = [one.estimated / one.cells - 1 for one in shown if one.estimated]
     captions = {
         "frame_ms": "Error against time per frame. Filled: at the clock that the design reached when it was placed and "

@@ -180,7 +180,7 @@ def _trends(pictures: Pictures) -> tuple[Section, str]:
     caption = (
         f"Forward errors of hit points by reflections so far, with F = {fewest}, and the greatest bound of any ray."
     )
-    figure = plots.by_depth(lines, KINDS, 3.4, "reflections so far", "hit point error, world units")
+    figure = plots.by_depth(lines, KINDS)
     title, plot = "Error against fraction bits and reflections", Plot("hit_errors", caption, figure, data)
     return Section(title, text, said, [plot], [Table.of(data)]), summary
 

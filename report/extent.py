@@ -70,5 +70,5 @@ def extent(quick: bool) -> Extent:
         fractions=range(9), reflections=range(MOST_REFLECTIONS + 1), worlds=200,
         rounded=seed_designs((0, 2, 4, 6, 8), (20, 32)), exact=exact_designs((4, 5, 8, 10, 16)), cases=cases,
         case_fractions=(0, 4), case_screen="vga", probed_cases=plain, probed=probed, shown=shown,
-        left=("corners", "facing_mirrors", "stage", "pool", "evening", "shadow_hall"),
+        left=("corners", "facing_mirrors", "pool", "evening", "shadow_hall"),
     )  # fmt: skip

@@ -9,12 +9,12 @@ from raycaster.configuration import configure
 from raycaster.report import plots
 from raycaster.report.extent import Extent
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
-from raycaster.report.points import Point, name_of
+from raycaster.report.points import LEFT_UNITS, Point, name_of
 from raycaster.report.sweep import Sweep
 
 COLUMNS = (
-    "scene", "left out", "LUT4", "registers", "multipliers", "units", "cycles per frame", "clock MHz", "ms per frame",
-    "command",
+    "scene", "left out", "LUT4", "registers", "multipliers", "units needed", "cycles per frame", "clock MHz",
+    "ms per frame", "command",
 )  # fmt: skip
 
 
@@ -45,9 +45,10 @@ def omission_chapter(what: Extent, scenes: Sequence[str], sweep: Sweep) -> Chapt
     text = (
         f"The {what.left_engine} engine for any scene has reflections, turned cameras, mirrors of any strength, "
         "patterns and a light. Each step removes one thing that the scene does not need from the previous design. "
-        "Designs have just enough units to meet the row budget; a step that saves time can thus save units. Cycles are "
-        "for the worst case, and the clock is the required one. Steps that change no cells are missing from the plots. "
-        "Cells were counted by Yosys, before placement."
+        f"All have {LEFT_UNITS} units, so that a step's cells are those of the part; its time shows in the cycles per "
+        "frame, which are for the worst case, and in the fewest units that meet the row budget. The clock is the "
+        "required one. Steps that change no cells are missing from the plots. Cells were counted by Yosys, before "
+        "placement."
     )
     tables = [Table.of(Data("left", COLUMNS, rows), hidden=1)]
     return Chapter([Section("What leaving out buys", text, plots=drawn, tables=tables)], summary=[summary])

@@ -184,28 +184,16 @@ def shares(by: Mapping[Rounding, Mapping[int, Sequence[float]]]) -> Figure:
 
 
 @styled
-def by_depth(
-    by: Mapping[str, Mapping[str, Sequence[float]]],
-    lines: Mapping[str, Mapping[str, str]],
-    height: float,
-    across: str,
-    up: str,
-) -> Figure:
-    """Plot errors by depth of reflection: a panel per case, with lines in these styles."""
-    columns = 2
-    figure, panels = new_figure(height, -(-len(by) // columns), columns, sharex=True, sharey=height < WIDTH)
-    for axes, (name, of) in zip(panels.flat, by.items(), strict=False):
+def by_depth(by: Mapping[str, Mapping[str, Sequence[float]]], lines: Mapping[str, Mapping[str, str]]) -> Figure:
+    """Plot errors of hit points by reflections so far: a panel per rounding, with lines in these styles."""
+    figure, [panels] = new_figure(3.4, 1, len(by), sharey=True)
+    for axes, (name, of) in zip(panels, by.items(), strict=True):
         for kind, style in lines.items():
-            label = kind if axes is panels[0, 0] else None
+            label = kind if axes is panels[0] else None
             axes.plot([max(value, 1e-3) for value in of[kind]], markersize=4, label=label, **style)
-        axes.set(title=name, yscale="log", xticks=range(0, len(of[kind]), 1 + len(of[kind]) // 8))
-    for axes in panels.flat[len(by) :]:
-        axes.set_visible(False)
-    for axes in panels[-1]:
-        axes.set_xlabel(across)
-    for axes in panels[:, 0]:
-        axes.set_ylabel(up)
-    _legend(figure, 2 if len(lines) % 2 == 0 else 3)
+        axes.set(title=name, yscale="log", xticks=range(len(of[kind])), xlabel="reflections so far")
+    panels[0].set_ylabel("hit point error, world units")
+    _legend(figure)
     return figure
 
 

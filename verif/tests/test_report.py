@@ -214,6 +214,7 @@ def test_steps_of_leaving_out():
     assert steps["rectangle registers"].fixed.camera is None
     assert steps["camera registers"].fixed.camera == scene.camera.position
     assert len(steps["camera registers"].fixed.rectangles) == len(scene.rect) > len(last.fixed.rectangles)
+    assert first.units > steps["light"].units >= last.units
 
 
 def test_pages_are_self_contained(tmp_path):
@@ -234,9 +235,6 @@ def test_pages_are_self_contained(tmp_path):
     assert 'id="plot-' in html and not re.search(r'(\bid="|"#|\(#)(?!plot-)', html[html.index("<svg") :])
     assert not re.search(r"<svg[^>]* (width|height)=", html)
     assert not re.search(r"(src|href)=\"(?!data:|#)", html)
-    text = (tmp_path / "report.md").read_text()
-    for written in ("![plot](plot.svg)", "| <x> | 12,345 |", "| y |  |", "**It <broke>.**"):
-        assert written in text
     assert 'alarm"' not in page.write(Chapter(sections), tmp_path).read_text()
 
 
@@ -339,7 +337,7 @@ def test_a_small_report(tmp_path, monkeypatch):
     plots.save(designs.error_and_time(again), tmp_path / "again.svg")
     assert (tmp_path / "again.svg").read_text() == (tmp_path / "work_frame_ms.svg").read_text()
     assert html.count("<figure") == html.count("<svg ") == 13
-    assert (tmp_path / "report.md").stat().st_size and rows("catalogue")
+    assert rows("catalogue")
     keys = "scene", "F", "rounding", "reflections"
     [one] = [row for row in rows("pictures") if [row[key] for key in keys] == ["corners", "4", "nearest", "1"]]
     words = "--fraction-bits 4 --rounding nearest --reflections 1 --screen vga"
