@@ -129,13 +129,12 @@ def _compared(
         "pictures, without lights: Q18.14 fixed point, truncated (HomebrewGPU); a float with a sign, 6 bits of "
         "exponent and 13 stored bits of significand, truncated (Racing the Beam); and IEEE single precision, without "
         "an epsilon and with one of 0.001 world units. They compute t = n / e and O + D t; the projects' hardware "
-        "also normalises slopes and divides by reciprocals or tables, which adds errors. The first two skip the "
-        "mirror that a ray starts on. A float's hit point is off by at most |w| (2 u + u^2) for the way w from the "
-        "origin, with the unit roundoff u, and twice u times the greater operand of the sum. Figures are over the "
-        f"{len(every)} pictures whose camera is not turned; measures.csv has all. A unit computes a + b (c - d) / e, "
-        "with one quotient bit per cycle; the exact engine's is the test of a whole rectangle, which replaces two. "
-        "Nothing else of a ray tracer was counted, and no float unit, whose shifters and roundings would have to be "
-        "designed first."
+        "also normalises slopes and divides by reciprocals or tables, which adds errors. A float's hit point is off "
+        "by at most |w| (2 u + u^2) for the way w from the origin, with the unit roundoff u, and twice u times the "
+        f"greater operand of the sum. Figures are over the {len(every)} pictures whose camera is not turned; "
+        "measures.csv has all. A unit computes a + b (c - d) / e, with one quotient bit per cycle; the exact engine's "
+        "is the test of a whole rectangle, which replaces two. Nothing else of a ray tracer was counted, and no float "
+        "unit, whose shifters and roundings would have to be designed first."
     )
     noisy = max(off["no slope"], key=lambda name: off["no slope"][name])
     said = [
