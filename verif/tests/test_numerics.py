@@ -97,6 +97,9 @@ def test_the_condition_of_rays_by_hand():
         perfect = ExactModel().trace(table(plane), (0, 0, 0), (0, 0, 0), [[2, 1, 2], [-2, -1, -2]], 0)
         [found] = relative_conditions([[2, 1, 2], [-2, -1, -2]], perfect)
         assert found[0] == condition and np.isnan(found[1])
+    # Reflected in the first plane, the ray meets the second one at y = 100, x = 0.
+    perfect = ExactModel().trace(table(*planes[:2]), (0, 0, 0), (0, 0, 0), [[2, 1, 2]], 1)
+    assert [one.tolist() for one in relative_conditions([[2, 1, 2]], perfect)] == [[1.5], [3]]
 
 
 def test_a_condition_is_how_far_a_hit_moves():
