@@ -168,7 +168,10 @@ class Outcomes:
         return cones
 
     def distances(self, met: tuple[int, ...], pixels: np.ndarray) -> np.ndarray:
-        """Return the distance of pixels, (pixels, 2) as column and row, from the set of `cones`; infinite if empty."""
+        """Return the distances of pixels, (pixels, 2), outside the set of `cones` from it; infinite if it is empty.
+
+        A pixel is given by column and row.
+        """
         least = np.full(len(pixels), np.inf)
         adjugate = _adjugate(self._screen)
         for cone in self.cones(met):
@@ -215,13 +218,12 @@ def _adjugate(matrix: np.ndarray) -> np.ndarray:
 
 
 def _distances(polygon: np.ndarray, pixels: np.ndarray) -> np.ndarray:
-    """Return the distances of points, (points, 2), from a convex polygon by its corners, (corners, 2), in order."""
-    start = polygon[None]
-    side = np.roll(polygon, -1, axis=0)[None] - start
-    off = pixels[:, None] - start
-    length = (side**2).sum(axis=2)
+    """Return the distances of points, (points, 2), from a polygon's outline by its corners, (corners, 2), in order.
+
+    A pixel that is drawn wrong is not inside.
+    """
+    side = np.roll(polygon, -1, axis=0) - polygon
+    off = pixels[:, None] - polygon
+    length = (side**2).sum(axis=1)
     along = np.clip((off * side).sum(axis=2) / np.where(length, length, 1), 0, 1)
-    least = np.sqrt(((off - along[..., None] * side) ** 2).sum(axis=2).min(axis=1))
-    turns = np.sign(side[..., 0] * off[..., 1] - side[..., 1] * off[..., 0])
-    inside = (len(polygon) > 2) & ((turns >= 0).all(axis=1) | (turns <= 0).all(axis=1))
-    return np.where(inside, 0, least)
+    return np.sqrt(((off - along[..., None] * side) ** 2).sum(axis=2).min(axis=1))

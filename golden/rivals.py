@@ -133,9 +133,6 @@ class RivalModel(Model):
     epsilon: float = 0
     """Distance from a ray's origin, in world units, within which the ray hits nothing; 0 in fixed point."""
 
-    skips_own: bool = False
-    """A reflected ray does not hit the rectangle that it starts on."""
-
     def meetings(
         self, rectangles: Rectangles, origin: np.ndarray, slope: np.ndarray, *, keep: bool
     ) -> Iterator[Meeting]:
@@ -150,15 +147,12 @@ class RivalModel(Model):
         shift = np.maximum(np.frexp(np.abs(slope).max(axis=0))[1] - SLOPE_BITS, 0)
         start = self.epsilon / np.sqrt((np.ldexp(slope, -shift) ** 2).sum(axis=0))
         origin, slope = number.of(origin), number.of(slope, shift)
-        winner = np.full(slope.shape[1], -1)
-        alive = np.ones(winner.shape, dtype=bool)
+        alive = np.ones(slope.shape[1], dtype=bool)
         while True:
-            own, winner, nearest = winner, np.full_like(winner, -1), np.zeros_like(origin[0])
+            winner, nearest = np.full(slope.shape[1], -1), np.zeros_like(origin[0])
             for index in np.flatnonzero(rectangles.visible):
                 t, within = self.crossed(rectangles, index, origin, slope)
                 hit = alive & within & (t > start) & ((winner < 0) | (t < nearest))
-                if self.skips_own:
-                    hit &= own != index
                 winner[hit] = index
                 np.copyto(nearest, t, where=hit)
             origin = np.where(winner >= 0, number.plus(origin, number.times(slope, nearest)), origin)
@@ -233,11 +227,10 @@ SINGLE = Float(24, 8, nearest=True)
 """IEEE single precision."""
 
 RIVALS = {
-    "q18.14": RivalModel(Fixed(32, 14), skips_own=True),
-    "float20": RivalModel(Float(14, 6, nearest=False), skips_own=True),
+    "q18.14": RivalModel(Fixed(32, 14)),
+    "float20": RivalModel(Float(14, 6, nearest=False)),
     "single": RivalModel(SINGLE),
     "single-epsilon": RivalModel(SINGLE, 1e-3),
 }
-"""Q18.14 is the format of HomebrewGPU, whose rays skip the primitive that they start on. The float of Racing the Beam
-has a sign, 6 bits of exponent and 13 stored bits of significand; it truncates, and its only mirror cannot meet itself.
-"""
+"""Q18.14 is the format of HomebrewGPU. The float of Racing the Beam has a sign, 6 bits of exponent and 13 stored bits
+of significand, and truncates."""

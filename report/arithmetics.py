@@ -86,26 +86,28 @@ def _compared(
     # Pictures that every arithmetic can draw.
     common = {group: [found[p] for p in points if not p.scene.camera.turned] for group, points in groups.items()}
     every = [one for of in common.values() for one in of]
-    pixels = sum(one["pixels"] for one in every)
-    flips = {"any": "flipped", "> 0.01 px": "near", "> 1 px": "far", "no slope": "never"}
-    shares, off = ({key: {"exact": 0.0} for key in keys} for keys in (common, flips))
+    pixels, exact = sum(one["pixels"] for one in every), dict.fromkeys(keys, 0)
+    flips = {"any": "flipped", "> 0.01 px": "near", "> 1 px": "far", "none": "never"}
+    shares, off = ({key: {} for key in keys} for keys in (common, flips))
     table, means = [], {}
-    for name, title in list(TITLES.items())[1:]:
-        for group, of in common.items():
-            shares[group][name] = float(np.mean([one["arithmetics"][name]["wrong"] / one["pixels"] for one in of]))
-        of = [one["arithmetics"][name] for one in every]
+    for name, title in TITLES.items():
+        for group, ones in common.items():
+            wrong = [one["arithmetics"].get(name, exact)["wrong"] / one["pixels"] for one in ones]
+            shares[group][name] = float(np.mean(wrong))
+        of = [one["arithmetics"].get(name, exact) for one in every]
         for label, key in flips.items():
             off[label][name] = sum(one[key] for one in of) / pixels
-        sizes = [one["pixels"] - one["arithmetics"][name]["never"] for one in every]
+        sizes = [whole["pixels"] - one["never"] for whole, one in zip(every, of, strict=True)]
         means[name] = float(np.average([one["backward_mean"] for one in of], weights=sizes))
         percent = [100 * values[name] for values in (*shares.values(), *off.values())]
         most = [max(one[key] for one in of) for key in ("backward", "forward", "of_bound")]
-        cells = units[name][0] if name in units else {}
-        table.append([title, *percent, means[name], *most, cells.get("cells"), cells.get("multipliers")])
+        cells, command = units.get(name, (dict.fromkeys(("cells", "registers", "multipliers")), None))
+        table.append([title, *percent, means[name], *most, *cells.values(), command])
     columns = (
         "arithmetic", *(f"wrong pixels, {group}: mean, %" for group in common), "flipped rays, %",
         *(f"backward error {label}, %" for label in list(flips)[1:]), "mean, px", "greatest, px",
-        "forward error: greatest, world units", "error / bound", "LUT4 of a unit", "multipliers",
+        "forward error: greatest, world units", "error / bound", "LUT4 of a unit", "registers", "multipliers",
+        "command",
     )  # fmt: skip
     cells = {name: of["cells"] for name, (of, _) in units.items()}
     figure = plots.by_arithmetic(
@@ -116,11 +118,7 @@ def _compared(
         "the left end are 0; units of floats were not counted."
     )
     plot = Plot("arithmetics", caption, figure, Data("arithmetics", columns, table))
-    counted = [[TITLES[name], *of.values(), command] for name, (of, command) in units.items()]
-    files = [
-        Data("measures", ("scene", "arithmetic", "pixels", *keys, "command"), rows),
-        Data("units", ("arithmetic", "LUT4", "registers", "multipliers", "command"), counted),
-    ]
+    measured = Data("measures", ("scene", "arithmetic", "pixels", *keys, "command"), rows)
     text = (
         "The number of wrong pixels is discontinuous: an error of any size flips a pixel or does not. The backward "
         "error of a ray is the least move of its slope, in pixels, for which it meets what was drawn, mirror by "
@@ -129,22 +127,22 @@ def _compared(
         "pictures, without lights: Q18.14 fixed point, truncated (HomebrewGPU); a float with a sign, 6 bits of "
         "exponent and 13 stored bits of significand, truncated (Racing the Beam); and IEEE single precision, without "
         "an epsilon and with one of 0.001 world units. They compute t = n / e and O + D t; the projects' hardware "
-        "also normalises slopes and divides by reciprocals or tables, which adds errors. The first two skip the "
-        "mirror that a ray starts on. A float's hit point is off by at most |w| (2 u + u^2) for the way w from the "
-        "origin, with the unit roundoff u, and twice u times the greater operand of the sum. Figures are over the "
-        f"{len(every)} pictures whose camera is not turned; measures.csv has all. A unit computes a + b (c - d) / e, "
-        "with one quotient bit per cycle; the exact engine's is the test of a whole rectangle, which replaces two. "
-        "Nothing else of a ray tracer was counted, and no float unit, whose shifters and roundings would have to be "
-        "designed first."
+        "also normalises slopes and divides by reciprocals or tables, which adds errors. A float's hit point is off "
+        "by at most |w| (2 u + u^2) for the way w from the origin, with the unit roundoff u, and twice u times the "
+        f"greater operand of the sum. Figures are over the {len(every)} pictures whose camera is not turned; "
+        "measures.csv has all. A unit computes a + b (c - d) / e, with one quotient bit per cycle; the exact engine's "
+        "is the test of a whole rectangle, which replaces two. Nothing else of a ray tracer was counted, and no float "
+        "unit, whose shifters and roundings would have to be designed first."
     )
-    noisy = max(off["no slope"], key=lambda name: off["no slope"][name])
+    noisy = max(off["none"], key=lambda name: off["none"][name])
     said = [
         f"The mean backward error of all rays is {means['seed-0']:.2g} pixels for the seed engine with F = 0, "
         f"{means['q18.14']:.2g} for Q18.14 and {means['float20']:.2g} for the 20-bit float.",
-        f"Most rays without any right slope are in {TITLES[noisy]}: {off['no slope'][noisy]:.3%} of all, mostly "
-        "reflections in which a mirror hits itself.",
+        f"Most rays without any right slope are in {TITLES[noisy]}: {off['none'][noisy]:.3%} of all, mostly "
+        "reflections in which a mirror hits itself. Errors of over a pixel that more digits do not reduce are in "
+        "corners, where an exact ray reflects off all walls, and a rounded one off some.",
     ]
-    return Section("Other arithmetic", text, said, [plot], [Table.of(plot.data)], files)
+    return Section("Other arithmetic", text, said, [plot], [Table.of(plot.data, hidden=1)], [measured])
 
 
 def _rule(found: Results) -> tuple[Section, float]:
@@ -221,16 +219,16 @@ def _shadows(what: Extent, sources: Sequence[str]) -> list[Section]:
     rows, worst = [], (-1, "", [])
     for name, scenes in (groups | {f"{len(stiff)} stiff cases": stiff}).items():
         counts = np.zeros((len(EPSILONS), 3), dtype=int)
-        for scene in scenes:
+        for scene, light in ((one, one.light) for one in scenes if one.light):
             slopes, exact = exact_trace(scene, "vga", 0)
             _, plain = exact_trace(scene.model_copy(update={"light": None}), "vga", 0)
             lit, shown = exact.shadings[0].lit, [("exact", exact.colours.reshape(slopes.shape))]
             for place, epsilon in enumerate(EPSILONS):
                 arguments = Rectangles.of_scene(scene), scene.camera.position, slopes.reshape(-1, 3)
-                found = RivalModel(SINGLE, epsilon).lit(*arguments, scene.light.position, exact)
+                found = RivalModel(SINGLE, epsilon).lit(*arguments, light.position, exact)
                 counts[place] += lit.sum(), (lit & ~found).sum(), (found & ~lit).sum()
                 colours = plain.colours.copy()
-                dim(colours, (exact.winners[0] >= 0) & ~found, scene.light)
+                dim(colours, (exact.winners[0] >= 0) & ~found, light)
                 shown.append((f"epsilon {epsilon:g}: {(lit != found).sum():,} wrong", colours.reshape(slopes.shape)))
             worst = max(worst, (int(counts[0, 1]) if name in groups else -1, name, shown), key=lambda one: one[0])
         for epsilon, of in zip(EPSILONS, counts.tolist(), strict=True):

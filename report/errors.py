@@ -83,11 +83,12 @@ def error_chapter(pictures: Pictures) -> Chapter:
         "scene", "F", "rounding", "reflections", "pixels", "wrong", "wrong share", "PSNR dB", "SSIM",
         "coordinates over bound", "command",
     )  # fmt: skip
-    rows = []
-    for point, result in pictures.results.items():
-        row = [name_of(point.what), point.config.fraction_bits, point.config.rounding, point.config.reflections]
-        row += [result[name] for name in ("pixels", "wrong", "wrong_share", "psnr", "ssim")]
-        rows.append([*row, sum(depth["exceeded"] for depth in result["depths"]), point.command])
+    rows = [
+        [name_of(one.what), one.config.fraction_bits, one.config.rounding, one.config.reflections,
+         *(of[name] for name in ("pixels", "wrong", "wrong_share", "psnr", "ssim")),
+         sum(depth["exceeded"] for depth in of["depths"]), one.command]
+        for one, of in pictures.results.items()
+    ]  # fmt: skip
     distribution, first = _distribution(pictures, Data("pictures", columns, rows))
     trends, second = _trends(pictures)
     alarms = [f"{pictures.exceeded} coordinates exceed their bound."] if pictures.exceeded else []

@@ -97,6 +97,9 @@ def test_the_condition_of_rays_by_hand():
         perfect = ExactModel().trace(table(plane), (0, 0, 0), (0, 0, 0), [[2, 1, 2], [-2, -1, -2]], 0)
         [found] = relative_conditions([[2, 1, 2], [-2, -1, -2]], perfect)
         assert found[0] == condition and np.isnan(found[1])
+    # Reflected in the first plane, the ray meets the second one at y = 100, x = 0.
+    perfect = ExactModel().trace(table(*planes[:2]), (0, 0, 0), (0, 0, 0), [[2, 1, 2]], 1)
+    assert [one.tolist() for one in relative_conditions([[2, 1, 2]], perfect)] == [[1.5], [3]]
 
 
 def test_a_condition_is_how_far_a_hit_moves():
@@ -283,7 +286,7 @@ def test_rays_in_single_precision_are_those_of_fractions():
 
 
 def test_an_epsilon_prevents_a_mirror_from_hitting_itself():
-    """Without one, rounded points lie on either side of their mirror; Q18.14 skips the mirror by its index."""
+    """Without one, points rounded to nearest lie on either side of their mirror; truncated ones never lie behind it."""
     scene = load_scene(find_scene("boxes"))
     rectangles, rays = Rectangles.of_scene(scene), primary_slopes(SCREENS["vga", 240]).reshape(-1, 3)
     own = {}
@@ -318,6 +321,21 @@ def test_every_kind_of_table_has_rays_and_they_meet_their_aims():
             for low, high in zip(aimed.rectangles.low, aimed.rectangles.high, strict=True)
         ]
         assert (np.sum(on, axis=0) >= 2).all(), repeat()
+
+
+def test_a_small_error_of_an_aimed_ray_is_no_excuse():
+    """Rays whose slopes are off by some hundred-millionths meet something at once, or at most 1% farther away."""
+    rng, fine = np.random.default_rng(seed()), 10**8
+    for aimed in suite(seed(), 2, 1500):
+        if aimed.kind == "mirrored room":
+            continue
+        near = fine * aimed.slopes + rng.integers(-3, 4, aimed.slopes.shape)
+        traced = ExactModel().trace(aimed.rectangles, aimed.cameras, (0, 0, 0), near, 0)
+        [winner], rays = traced.winners, np.arange(len(near))
+        axis = aimed.rectangles.axes[winner]
+        way = aimed.rectangles.low[winner, axis] - aimed.cameras[rays, axis]
+        g, m = aimed.reached
+        assert (winner >= 0).all() and (fine * way / near[rays, axis] <= 1.01 * g / m).all(), (aimed.kind, repeat())
 
 
 def test_an_open_comparison_leaks(monkeypatch):
