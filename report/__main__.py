@@ -9,6 +9,7 @@ import importlib.metadata
 import os
 import platform
 from collections.abc import Mapping, Sequence
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,7 @@ from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, Check, Outcome, Published, add_keep_option, keep, kept_outcome, table
 from raycaster.output import Console
 from raycaster.report.arithmetics import arithmetic_chapter
-from raycaster.report.designs import describe, design_chapter, find_designs, to_keep
+from raycaster.report.designs import Spreads, design_chapter, find_designs, to_keep
 from raycaster.report.errors import REFLECTIONS, error_chapter, find_pictures
 from raycaster.report.extent import Extent, extent
 from raycaster.report.omissions import omission_chapter
@@ -61,7 +62,7 @@ def write_report(directory: Path, what: Extent, sweep: Sweep, command_line: str)
     if not scenes:
         raise UserError(f"{SCENES}: contains no scene files; run this in the project directory")
     pictures = find_pictures(what, scenes, sweep)
-    spreads = {(f, r): Spread.of(found) for r, of in pictures.all_shares.items() for f, found in of.items()}
+    spreads: Spreads = {(f, r): Spread.of(found) for r, of in pictures.all_shares.items() for f, found in of.items()}
     designs = find_designs(what.rounded, what.exact, spreads, sweep)
     stability, of_cases = stability_chapter(what, sweep)
     page = sum(
@@ -117,7 +118,7 @@ def command_parser() -> CommandParser:
 
 def _provenance(figures: Mapping[str, Any]) -> Provenance:
     designs = [configure(**row["options"]) for row in figures["designs"] if row["best"]]
-    sources = ["golden", "scenes", "verif/random_scenes.py", "report/points.py", "report/designs.py", *DECIDES]
+    sources = ["golden", "scenes", "verif/random_scenes.py", "report/points.py", "report/hardware.py", *DECIDES]
     return Provenance(designs, sources, TOOLS)
 
 
@@ -129,12 +130,10 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
 def _error_and_time(kept: Outcome) -> str:
     """Tabulate the best designs, which were all simulated and counted."""
     rows = []
-    for row in kept.figures["designs"]:
-        if row["best"]:
-            config = configure(**row["options"])
-            pixels = config.screen_geometry.columns * config.screen_geometry.rows
-            pixel_ns, ms = row["frame_ms"] * 1e6 / pixels, row["frame_ms"]
-            rows.append([describe(config), row["luts"], f"{pixel_ns:.2f}", f"{ms:.2f}", f"{row['wrong_share']:.4%}"])
+    for row in filter(itemgetter("best"), kept.figures["designs"]):
+        config, ms, share = configure(**row["options"]), row["frame_ms"], row["wrong_share"]
+        pixel_ns = ms * 1e6 / config.screen_geometry.columns / config.screen_geometry.rows
+        rows.append([config.facts.describe(config), row["luts"], f"{pixel_ns:.2f}", f"{ms:.2f}", f"{share:.4%}"])
     return table(["design", "LUT4", "ns per pixel", "ms per frame", "mean share of wrong pixels"], rows)
 
 

@@ -4,21 +4,18 @@
 from __future__ import annotations
 
 import itertools
-import json
 import statistics
-from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from typing import Any
 
 from matplotlib.figure import Figure
 
-from raycaster.configuration import OPTIONS, Configuration, ConfigurationError, Rounding, configure
+from raycaster.configuration import OPTIONS, Configuration, Rounding, configure
 from raycaster.convert.take_home import TOP
 from raycaster.fpga.area import with_units
-from raycaster.outcomes import RESULTS
 from raycaster.report import plots
+from raycaster.report.hardware import Candidate, frontier, required_mhz
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
 from raycaster.report.points import UNITS, Point, predicted_cycles
 from raycaster.report.statistics import Spread
@@ -33,77 +30,8 @@ RUNS = 5
 COSTS = "frame_ms", "work", "cells"
 """Attributes of a design that are its cost; on each frontier, one of them is set against the error."""
 
-BEAMS: Sequence[Mapping[str, Any]] = (
-    {"scale": 1}, {}, {"pixels": 2}, {"rows": 180}, {"rows": 180, "pixels": 2}, {"rows": 180, "scale": 6},
-    {"rows": 180, "scale": 6, "pixels": 2},
-)  # fmt: skip
-"""Options for the beam engine at scales 1, 2, 4 and 6, with one or two pixels per clock."""
-
 Spreads = Mapping[tuple[int, Rounding], Spread]
 """Distributions of the share of wrong pixels, by fraction bits and rounding."""
-
-
-@dataclass(frozen=True, eq=False)
-class Candidate:
-    """A design with its estimated and measured cost."""
-
-    config: Configuration
-    error: float
-    """Mean share of wrong pixels."""
-
-    estimated: int = 0
-    """Estimated ECP5 LUT4 count: the shared part plus the units times the size of one."""
-
-    counted: Mapping[str, int] | None = None
-    """Counted cells of the whole design, by kind."""
-
-    timing: Mapping[str, Any] | None = None
-    """Simulation result: a point of the kind time, see `raycaster.report.points`."""
-
-    @property
-    def is_found(self) -> bool:
-        """True if the design was simulated and its cells were counted."""
-        return self.counted is not None and self.timing is not None
-
-    @property
-    def cells(self) -> int:
-        """LUT4 count, or its estimate if the cells were not counted."""
-        return self.counted["cells"] if self.counted else self.estimated
-
-    @property
-    def frame_cycles(self) -> int:
-        """Cycles to compute a frame: from the hardware's counter if simulated, otherwise predicted."""
-        return self.timing["frame_cycles"] if self.timing else predicted_cycles(self.config)
-
-    @property
-    def is_routed(self) -> bool:
-        """True if the design was placed and routed, so that its time is at the clock that it reached."""
-        return self.config.name in routed_clocks()
-
-    @property
-    def clock_mhz(self) -> float:
-        """Routed clock, or the one that the design's monitor requires if it was not placed and routed."""
-        return routed_clocks().get(self.config.name, required_mhz(self.config))
-
-    @property
-    def frame_ms(self) -> float:
-        """Milliseconds to compute a frame, at `clock_mhz`."""
-        return self.frame_cycles / self.clock_mhz / 1000
-
-    @property
-    def work(self) -> float:
-        """LUT4 occupied for a frame's time, in LUT4 times seconds."""
-        return self.cells * self.frame_ms / 1000
-
-    @property
-    def seconds(self) -> Sequence[float]:
-        """Seconds per frame that each run of Verilator's model took; none if it was not simulated here."""
-        return (self.timing or {}).get("seconds", ())
-
-    @property
-    def simulated_s(self) -> float:
-        """Median of `seconds`; NaN without any."""
-        return statistics.median(self.seconds) if self.seconds else float("nan")
 
 
 @dataclass(frozen=True)
@@ -133,86 +61,12 @@ class Designs:
         return list(dict.fromkeys([*frontier(self.exact, "frame_ms", "cells"), *of_rounded]))
 
 
-def seed_designs(fractions: Iterable[int], units: Iterable[int], screen: str = "vga") -> list[Configuration]:
-    """List the seed engine's designs with these options that meet the row budget, with one reflection.
-
-    They have no culling, so that a design's time does not depend on the scene.
-    """
-    names = "fraction_bits", "units", "rounding", "divider_bits"
-    choices = itertools.product(fractions, units, ("truncate", "nearest"), (1, 2, 3))
-    return _possible(screen, ({"culling": False, **dict(zip(names, choice, strict=True))} for choice in choices))
-
-
-def exact_designs(units: Iterable[int], screen: str = "vga") -> list[Configuration]:
-    """List designs without error: the exact engine's that meet the row budget, and the beam engine's.
-
-    The beam engine has just one for screens other than VGA.
-    """
-    beams = BEAMS if screen == "vga" else [{}]
-    exacts = ({"engine": "exact", "units": count} for count in units)
-    return _possible(screen, [*exacts, *({"engine": "beam", **one} for one in beams)])
-
-
-def _possible(screen: str, choices: Iterable[Mapping[str, Any]]) -> list[Configuration]:
-    found = []
-    for choice in choices:
-        with suppress(ConfigurationError):
-            found.append(configure(screen=screen, **choice))
-    return found
-
-
-def frontier(candidates: Sequence[Candidate], *measures: str) -> list[Candidate]:
-    """Return the designs that no other one dominates, ordered by the first of these attributes.
-
-    A design dominates another if it is better by one measure and not worse by any.
-    """
-    values = {one: tuple(getattr(one, name) for name in measures) for one in candidates}
-
-    def dominates(theirs: tuple[float, ...], mine: tuple[float, ...]) -> bool:
-        return theirs != mine and all(a <= b for a, b in zip(theirs, mine, strict=True))
-
-    best = (one for one, mine in values.items() if not any(dominates(theirs, mine) for theirs in values.values()))
-    return sorted(best, key=values.__getitem__)
-
-
-@cache
-def routed_clocks() -> dict[str, float]:
-    """Return the MHz that the system clock reached when a design was placed and routed, by configuration name.
-
-    The slowest counts, if a design was routed for several boards, with several seeds, or without a board.
-    """
-    found: dict[str, float] = {}
-    for path in sorted(RESULTS.glob("*.json")):
-        kept = json.loads(path.read_text())
-        name, figures, reached = kept["scope"].get("configuration"), kept["figures"], []
-        if path.name.startswith("bitstream-"):
-            reached = [(name, clock) for clock in figures["clocks"].get("clk", [])[:1]]
-        elif path.name.startswith("area-") and "routed_mhz" in figures:
-            reached = [(name, figures["routed_mhz"])]
-        elif path.name == "beside.json":
-            ours = (row["design"].partition("RayCaster, ") + (row,) for row in figures["designs"])
-            reached = [(configure(engine=engine).name, row["routed_mhz"]) for _, known, engine, row in ours if known]
-        for one, mhz in reached:
-            found[one] = min(mhz, found.get(one, mhz))
-    return found
-
-
-def required_mhz(config: Configuration) -> float:
-    """Return the clock that the design's monitor requires, in MHz."""
-    return config.screen_geometry.clock_hz / 1e6
-
-
-def describe(config: Configuration) -> str:
-    """Describe a design in a few words."""
-    return config.facts.describe(config)
-
-
 def to_keep(found: Designs) -> list[dict[str, Any]]:
     """Return a row per design with the figures for the manual's table and plot, and the non-default options."""
     best = found.best
     return [
         {
-            "design": describe(one.config),
+            "design": one.title,
             "options": {k: v for k, option in OPTIONS.items() if (v := getattr(one.config, k)) != option.default},
             "luts": one.cells, "frame_cycles": one.frame_cycles,
             "frame_ms": one.frame_cycles / required_mhz(one.config) / 1000,
@@ -326,7 +180,7 @@ def design_chapter(found: Designs, spreads: Spreads) -> Chapter:
     ]
     ends = {"smallest": min(exact, key=lambda one: one.cells), "fastest": min(exact, key=lambda one: one.frame_ms)}
     words = (
-        f"the {which} is {describe(one.config)}, with {one.cells:,} LUT4 and {one.frame_ms:.3g} ms per frame"
+        f"the {which} is {one.title}, with {one.cells:,} LUT4 and {one.frame_ms:.3g} ms per frame"
         for which, one in ends.items()
     )
     verdict = "No design that rounds is worth its error. " if all(beaten) else ""
@@ -338,7 +192,7 @@ def design_chapter(found: Designs, spreads: Spreads) -> Chapter:
         "units for the exact engine, rows of the picture for the beam engine, x2 with two pixels per clock. The seed "
         "and exact engines draw 320x240 pixels; the beam engine computes every pixel that the monitor shows."
     )
-    routed = ", ".join(describe(one.config) for one in shown if one.is_routed) or "no designs"
+    routed = ", ".join(one.title for one in shown if one.is_routed) or "no designs"
     tuned = [
         f"Placed and routed, some for several boards or with several seeds, of which the slowest counts: {routed}. All "
         "other times are for the clock that the monitor requires, which the designs may miss or exceed.",
@@ -364,7 +218,7 @@ def _row(one: Candidate, spreads: Spreads) -> list:
     config, counted, timing = one.config, one.counted or {}, one.timing or {}
     spread = spreads[config.fraction_bits, config.rounding] if config.facts.divides else Spread(0, 0, 0, 0)
     return [
-        describe(config), *(round(100 * share, 4) for share in (spread.mean, spread.median, spread.most)),
+        one.title, *(round(100 * share, 4) for share in (spread.mean, spread.median, spread.most)),
         counted.get("cells"), one.estimated or None, counted.get("registers"), counted.get("multipliers"),
         one.frame_cycles, one.clock_mhz, "routed" if one.is_routed else "required", one.frame_ms, one.work,
         *(of(one.seconds) if one.seconds else None for of in (statistics.median, min, max)), timing.get("wrong"),

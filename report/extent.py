@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from raycaster.configuration import LOOKS, MOST_REFLECTIONS, Configuration, configure
 from raycaster.golden.catalogue import Case, catalogue
-from raycaster.report.designs import exact_designs, seed_designs
+from raycaster.report.hardware import exact_designs, seed_designs
 
 CASE_REFLECTIONS = 2
 """Number of reflections in the catalogue's cases."""
@@ -43,8 +43,6 @@ class Extent:
 
     left: Sequence[str]
     """Names of the packaged scenes for which a design is reduced step by step."""
-
-    left_engine: str = "exact"
 
 
 def extent(quick: bool) -> Extent:

@@ -23,8 +23,8 @@ def omission_chapter(what: Extent, scenes: Sequence[str], sweep: Sweep) -> Chapt
     sources = [source for source in scenes if name_of(source) in what.left]
     if not sources:
         return Chapter(summary=["This quick report does not measure the savings from leaving parts out."])
-    general = configure(engine=what.left_engine)
-    found = sweep("reduced designs", [Point("left", source, general) for source in sources])
+    engine = configure(engine="exact")
+    found = sweep("reduced designs", [Point("left", source, engine) for source in sources])
     rows, drawn, remaining = [], [], {}
     for point, result in found.items():
         name = name_of(point.what)
@@ -39,11 +39,10 @@ def omission_chapter(what: Extent, scenes: Sequence[str], sweep: Sweep) -> Chapt
         remaining[sizes[-1][1] / sizes[0][1]] = f"{name}, {sizes[-1][1]:,} LUT4"
     least, most = (f"{share:.0%} ({remaining[share]})" for share in (min(remaining), max(remaining)))
     summary = (
-        f"Without the parts that a scene does not need, {least} to {most} of the {what.left_engine} engine for any "
-        "scene remain."
+        f"Without the parts that a scene does not need, {least} to {most} of the exact engine for any scene remain."
     )
     text = (
-        f"The {what.left_engine} engine for any scene has reflections, turned cameras, mirrors of any strength, "
+        f"The exact engine for any scene has reflections, turned cameras, mirrors of any strength, "
         "patterns and a light. Each step removes one thing that the scene does not need from the previous design. "
         f"All have {LEFT_UNITS} units, so that a step's cells are those of the part; its time shows in the cycles per "
         "frame, which are for the worst case, and in the fewest units that meet the row budget. The clock is the "

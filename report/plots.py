@@ -28,7 +28,7 @@ from raycaster.screens import SCREENS
 if TYPE_CHECKING:
     from matplotlib.typing import RcKeyType
 
-    from raycaster.report.designs import Candidate
+    from raycaster.report.hardware import Candidate
 
 WIDTH = 4.6
 """Width in inches, a column of a printed page; 9-point text stays legible on a phone, at three quarters of the size."""

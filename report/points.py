@@ -109,13 +109,17 @@ def _world(seed: int) -> Scene:
     return random_scene(seed, RECTANGLES, 0, ("materials", "patterns")).model_copy(update={"rows": WORLD_ROWS})
 
 
-@lru_cache(maxsize=2)
-def exact_trace(scene: Any, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
-    """Return the slopes of a scene's picture, int64 (rows, columns, 3), and its exact trace; cached for successive use.
+def exact_trace(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
+    """Return the slopes of a picture, int64 (rows, columns, 3), and its exact trace; cached for successive points.
 
-    The screen is tiny or VGA; scenes of 180 rows, made for the beam engine, are drawn with 240. Scenes are hashable,
-    but pydantic's types do not show it.
+    The screen is tiny or VGA; scenes of 180 rows, made for the beam engine, are drawn with 240.
     """
+    # Frozen models are hashable, but pydantic's types do not show it.
+    return _exact_trace(scene, screen, reflections)  # pyright: ignore[reportArgumentType]
+
+
+@lru_cache(maxsize=2)
+def _exact_trace(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
     rows = 48 if screen == "tiny" else scene.rows if (screen, scene.rows) in SCREENS else 240
     slopes = primary_slopes(SCREENS[screen, rows], scene.camera.basis)
     return slopes, _traced(ExactModel(), scene, slopes.reshape(-1, 3), reflections, light=scene.light)

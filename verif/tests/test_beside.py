@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import pytest
-from rich.console import Console
 
 from raycaster.docs import beside
 from raycaster.docs.beside import (
@@ -17,6 +16,7 @@ from raycaster.docs.beside import (
 )
 from raycaster.errors import UserError
 from raycaster.fpga.cells import Area
+from raycaster.output import Console
 from raycaster.scene import load_scene, packaged_scenes
 from raycaster.screens import SCREENS
 from raycaster.sim.simulator import MODELS_VARIABLE, SimulationError
