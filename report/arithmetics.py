@@ -50,13 +50,12 @@ def arithmetic_chapter(what: Extent, scenes: Sequence[str], sweep: Sweep) -> Cha
         "stiff cases": case_measures(what),
     }
     found = sweep("measures", [point for points in groups.values() for point in points])
-    sections = [_compared(groups, found, _units(sweep))]
     rule, ratio = _rule({point: found[point] for point in groups["stiff cases"]})
     leaks, leaking = _watertight(what, sweep)
     alarms = [f"{leaking} rays leak in exact arithmetic."] if leaking else []
     if ratio > 1 + RULE_SLACK:
         alarms.append(f"A forward error is {ratio:.6f} times the product of condition number and backward error.")
-    return Chapter([*sections, rule, leaks, *_shadows(what, scenes)], alarms)
+    return Chapter([_compared(groups, found, _units(sweep)), rule, leaks, *_shadows(what, scenes)], alarms)
 
 
 def _measured(source: str, reflections: int, screen: str) -> Point:
@@ -191,14 +190,13 @@ def _watertight(what: Extent, sweep: Sweep) -> tuple[Section, int]:
         "Rectangles are watertight if no ray passes between two that share an edge or a corner. Rays are aimed "
         "exactly at shared edges and corners of tiled walls, stairs, closed rooms, and closed rooms seen in one of "
         f"their walls, with slopes of 9 bits and those of turned cameras (seed {SUITE_SEED}, {tables} tables of each "
-        f"kind, up to {AIMED_RAYS:,} rays each). A leak is a ray that sees the background or a farther rectangle. The "
-        "seed engine is tested without turned cameras. Exact arithmetic has none, by count and by proof: a closed "
-        "rectangle contains its edges, and a cross-multiplied comparison of integers is exact. The proofs of "
-        "`rect_tester` and `ray_tester` in the manual show that the hardware makes this comparison."
+        f"kind, up to {AIMED_RAYS:,} rays each). A leak is a ray that sees the background or a farther rectangle. "
+        "Exact arithmetic has none, by count and by proof: a closed rectangle contains its edges, and a "
+        "cross-multiplied comparison of integers is exact. The manual's proofs of `rect_tester` and `ray_tester` show "
+        "that the hardware makes this comparison. The seed engine is tested without turned cameras."
     )
     said = [
-        f"Exact arithmetic, which the exact and beam engines share: {sums['exact'][1]:,} leaks in "
-        f"{sums['exact'][0]:,} rays.",
+        f"In exact arithmetic, {sums['exact'][1]:,} of {sums['exact'][0]:,} rays leak.",
         "Where a wall and a step meet in an outward edge, a truncated t is short of both, so Q18.14 and the 20-bit "
         f"float leak {by['stairs']['q18.14']:.2%} of the rays at stairs. Rounding to nearest leaks in closed rooms "
         f"too: {by['room']['single']:.3%} in single precision. Rounding to the seed engine's fractions never moves a "

@@ -37,7 +37,7 @@ Found = Sequence[Mapping[str, Any]]
 
 @dataclass(frozen=True)
 class Pictures:
-    """Every picture of random worlds and packaged scenes, whose sources are given."""
+    """Every picture of random worlds and packaged scenes, by their sources."""
 
     what: Extent
     worlds: list[str]

@@ -61,7 +61,7 @@ def fixed_unit(clk, load, store, a, b, b_negative, c, d, e, e_negative, value):
         dividend.next[STEPS:FRACTION_BITS] = away
 
     @always(clk.posedge)
-    def divide():
+    def compute():
         if load:
             remainder.next = 0
             digits.next = dividend
@@ -71,12 +71,10 @@ def fixed_unit(clk, load, store, a, b, b_negative, c, d, e, e_negative, value):
         else:
             remainder.next = next_remainder
             digits.next = next_digits
-
-    @always(clk.posedge)
-    def multiply():
         if store:
             product.next = factor * digits[BITS:]
             stored_negative.next = negative
+        value.next = total[BITS:].signed()
 
     # The lower 32 bits do not depend on signs.
     @always_comb
@@ -85,10 +83,6 @@ def fixed_unit(clk, load, store, a, b, b_negative, c, d, e, e_negative, value):
             total.next = a - product[BITS + FRACTION_BITS : FRACTION_BITS]
         else:
             total.next = a + product[BITS + FRACTION_BITS : FRACTION_BITS]
-
-    @always(clk.posedge)
-    def deliver():
-        value.next = total[BITS:].signed()
 
     return instances()
 

@@ -9,7 +9,7 @@ from typing import Any
 from raycaster.configuration import Configuration
 from raycaster.golden.catalogue import catalogue
 from raycaster.report import plots
-from raycaster.report.arithmetics import case_measures
+from raycaster.report.arithmetics import Results, case_measures
 from raycaster.report.errors import ROUNDINGS
 from raycaster.report.extent import CASE_REFLECTIONS, Extent
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
@@ -31,9 +31,6 @@ LEAST = 0.1
 COLUMNS = (
     "case", "engine", "condition", "wrong pixels", "rays flipped", "worst error", "bound", "error / bound", "verdict",
 )  # fmt: skip
-
-Results = Mapping[Point, Mapping[str, Any]]
-Conditions = Mapping[str, float | None]
 
 
 def stability_chapter(what: Extent, sweep: Sweep) -> tuple[Chapter, dict[str, int]]:
@@ -89,7 +86,7 @@ def _extremes(depths: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return extremes | {name: sum(depth[name] for depth in depths) for name in ("flips", "exceeded")}
 
 
-def _rows(pictures: Results, shown: Results, conditions: Conditions) -> list[tuple[Point, list]]:
+def _rows(pictures: Results, shown: Results, conditions: Mapping[str, float | None]) -> list[tuple[Point, list]]:
     """Return a row per case and engine, each with its point."""
     rows = []
     for point, one in pictures.items():
@@ -105,7 +102,7 @@ def _rows(pictures: Results, shown: Results, conditions: Conditions) -> list[tup
 
 
 def _judged(
-    pictures: Results, shown: Results, hits: Results, conditions: Conditions
+    pictures: Results, shown: Results, hits: Results, conditions: Mapping[str, float | None]
 ) -> tuple[list[str], list[str], str]:
     """Return the sentences, the alarms and the summary."""
 
@@ -141,7 +138,7 @@ def _judged(
     return said, alarms, summary
 
 
-def _stiffness(pictures: Results, conditions: Conditions, first: int) -> Plot:
+def _stiffness(pictures: Results, conditions: Mapping[str, float | None], first: int) -> Plot:
     stiff = {}
     for point, one in pictures.items():
         name = name_of(point.what)
