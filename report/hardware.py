@@ -76,6 +76,11 @@ class Candidate:
         return self.frame_cycles / self.clock_mhz / 1000
 
     @property
+    def required_ms(self) -> float:
+        """Milliseconds to compute a frame, at the clock that the design's monitor requires."""
+        return self.frame_cycles / required_mhz(self.config) / 1000
+
+    @property
     def work(self) -> float:
         """LUT4 occupied for a frame's time, in LUT4 times seconds."""
         return self.cells * self.frame_ms / 1000
