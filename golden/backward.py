@@ -201,10 +201,10 @@ def backward_errors(
         float (rays,): in pixels; infinite if no slope within `MARGIN` pixels has what was drawn.
     """
     outcomes = Outcomes(rectangles, camera, slopes)
-    drawn, errors = np.array(drawn), np.zeros(slopes.shape[0] * slopes.shape[1])
-    wrong = np.flatnonzero((drawn != np.array(right)).any(axis=0))
+    every, errors = np.array(drawn), np.zeros(slopes.shape[0] * slopes.shape[1])
+    wrong = np.flatnonzero((every != np.array(right)).any(axis=0))
     pixels = np.stack([wrong % slopes.shape[1], wrong // slopes.shape[1]], axis=1)
-    met, which = np.unique(drawn[:, wrong], axis=1, return_inverse=True)
+    met, which = np.unique(every[:, wrong], axis=1, return_inverse=True)
     for place, one in enumerate(met.T.tolist()):
         errors[wrong[which == place]] = outcomes.distances(tuple(one), pixels[which == place])
     return errors

@@ -219,7 +219,7 @@ class RivalModel(Model):
         lit = exact.shadings[0].facing.copy()
         for index in np.flatnonzero(rectangles.visible):
             t, within = self.crossed(rectangles, index, points, way)
-            lit &= ~(within & (start < t) & (t < number.of(1)))
+            lit &= ~(within & (start < t) & (t < number.of(np.array(1))))
         return lit
 
 

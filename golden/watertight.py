@@ -13,7 +13,7 @@ that way finds both rectangles hit, at t = g / m or before, and has no leak.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
@@ -89,7 +89,7 @@ def _cuts(rng: np.random.Generator, low: int, high: int, parts: int) -> list[tup
     return list(pairwise(sorted([low, *inside.tolist(), high])))
 
 
-def _tiled(rng: np.random.Generator, low: np.ndarray, high: np.ndarray, parts: tuple[int, int]) -> np.ndarray:
+def _tiled(rng: np.random.Generator, low: np.ndarray, high: np.ndarray, parts: Sequence[int]) -> np.ndarray:
     """Return the corners, (tiles, 2, 3), of tiles that make up a rectangle, cut into parts in both directions."""
     [axis] = np.flatnonzero(low == high)
     u, v = OTHER_AXES[axis]
@@ -131,7 +131,7 @@ def _room(rng: np.random.Generator) -> np.ndarray:
         for place in (low[axis], high[axis]):
             corners = np.array([low, high])
             corners[:, axis] = place
-            walls.append(_tiled(rng, *corners, rng.integers(1, 3, 2)))
+            walls.append(_tiled(rng, corners[0], corners[1], rng.integers(1, 3, 2).tolist()))
     return np.concatenate(walls)
 
 
@@ -199,5 +199,7 @@ def _aimed(
     scale = VIEW_DISTANCE if turned else 1
     count = len(corners)
     table = Rectangles(corners, np.full((count, 3), 255, np.uint8), np.ones(count, dtype=bool))
-    chosen = (cameras, scale * slopes, eyes, scale * images)
-    return Aimed(kind, turned, table, *(one[good] for one in chosen), np.array([g, scale * m])[:, good])
+    return Aimed(
+        kind, turned, table, cameras[good], scale * slopes[good], eyes[good], scale * images[good],
+        np.array([g, scale * m])[:, good],
+    )  # fmt: skip

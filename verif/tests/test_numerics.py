@@ -74,7 +74,7 @@ def test_backward_errors_of_reflections_by_hand():
 
 
 def test_backward_errors_of_random_worlds():
-    """What the exact ray one pixel further left sees is right within a pixel, for each of two meetings."""
+    """The rectangles that the ray one pixel further left meets are right within a pixel."""
     rng, compared = np.random.default_rng(seed()), 0
     for _ in range(12):
         rectangles = random_rectangles(rng, 8)
@@ -103,7 +103,7 @@ def test_the_condition_of_rays_by_hand():
 
 
 def test_a_condition_is_how_far_a_hit_moves():
-    """Of all moves of a slope by a hundred-thousandth of it, the worst moves the hit as the condition number says."""
+    """The worst move of a slope, by a hundred-thousandth of it, moves the hit as the condition number says."""
     rng, fine, compared = np.random.default_rng(seed()), 10**9, 0
     for _ in range(30):
         rectangles = random_rectangles(rng, closed=True)
