@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
 from functools import partial
 from html import unescape
 from itertools import combinations
@@ -107,10 +108,13 @@ def sweep_of(directory: Path, make_executor=lambda: ProcessPoolExecutor(2)) -> S
     return Sweep(directory / "store", make_executor, Console(quiet=True))
 
 
-def test_a_sweep_computes_each_point_once(tmp_path):
+def test_a_sweep_computes_each_point_once(tmp_path, monkeypatch):
     """Results come in the order of the points, with the processor time of all of them, also of kept ones."""
-    several = [TINY_PICTURE, POINTS["world"], TINY_PICTURE]
-    first = (sweep := sweep_of(tmp_path))("", several)
+    several, computed, kind = [TINY_PICTURE, POINTS["world"], TINY_PICTURE], [], points.KINDS["picture"]
+    count = replace(kind, compute=lambda point: computed.append(point) or kind.compute(point))
+    monkeypatch.setitem(points.KINDS, "picture", count)
+    first = (sweep := sweep_of(tmp_path, lambda: ThreadPoolExecutor(1)))("", several)
+    assert computed == several[:2]
     again = (kept := sweep_of(tmp_path, lambda: pytest.fail("not kept")))("", several[1:])
     assert list(first) == several[:2] and list(again) == several[1:]
     assert first == again == {point: point.compute() for point in first}
