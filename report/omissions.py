@@ -33,7 +33,7 @@ def omission_chapter(what: Extent, scenes: Sequence[str], sweep: Sweep) -> Chapt
             counts = [one[key] for key in ("left_out", "cells", "registers", "multipliers", "units", "cycles")]
             of_scene.append([name, *counts, one["clock_mhz"], one["cycles"] / one["clock_mhz"] / 1000, point.command])
         rows += of_scene
-        sizes = [(one["left_out"], one["cells"]) for one in result["steps"]]
+        sizes = [(one["left_out"] or "any scene", one["cells"]) for one in result["steps"]]
         data = Data(f"left_{name}", COLUMNS, of_scene)
         drawn.append(Plot(data.name, f"{name}: cells after each step.", plots.waterfall(name, sizes), data))
         remaining[sizes[-1][1] / sizes[0][1]] = f"{name}, {sizes[-1][1]:,} LUT4"

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
@@ -220,8 +221,9 @@ def wrong_by_scene(points: Sequence[Point]) -> Figure:
         models = SeedModel(point.config.fraction_bits, point.config.rounding), ExactModel()
         drawn, right = (one.render(point.scene, SCREENS["vga", 240], point.config.reflections) for one in models)
         share = count_wrong(drawn, right) / right[..., 0].size
-        shown.append((f"{name_of(point.what)}: {share:.2%}", diff_picture(drawn, right)))
-    return pictures([shown[at : at + 3] for at in range(0, len(shown), 3)], 1.35)
+        name = fill(name_of(point.what).replace("_", " "), 20)  # no wider than the picture
+        shown.append((f"{name}: {share:.2%}", diff_picture(drawn, right)))
+    return pictures([shown[at : at + 3] for at in range(0, len(shown), 3)], 1.45)
 
 
 # Stability and omissions ----------------------------------------------------------------------------------------------
@@ -301,7 +303,7 @@ def waterfall(title: str, steps: Sequence[tuple[str, int]]) -> Figure:
     axes.bar_label(drawn, words, padding=3, fontsize=LABEL_POINTS)
     axes.set_yticks(range(len(bars)), names)
     axes.invert_yaxis()
-    axes.set(xlabel="LUT4", title=title, xlim=(0, 1.25 * max(ends)))
+    axes.set(xlabel="LUT4", title=title, xlim=(0, 1.35 * max(ends)))
     axes.xaxis.set_major_formatter("{x:,.0f}")
     axes.xaxis.set_major_locator(MaxNLocator(4))
     axes.grid(visible=False, axis="y")

@@ -346,6 +346,7 @@ def test_a_small_report(tmp_path, monkeypatch):
     words = "--fraction-bits 4 --rounding nearest --reflections 1 --screen vga"
     assert one["command"].endswith(f"points picture scenes/corners.toml {words}")
     assert [row["left out"] for row in rows("left")][::9] == ["", "hidden rectangles"]
+    assert ">any scene<" in (tmp_path / "left_corners.svg").read_text()
     best = rows("designs")
     assert {one["design"].split()[0] for one in best} == {"seed", "exact,", "beam"}
     assert all(one["pixels unlike the model"] == "0" and "--runs 2" in one["command"] for one in best)
