@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from raycaster.configuration import configure
-from raycaster.docs import engine_figures, scaling
+from raycaster.docs import beside, engine_figures, scaling
 from raycaster.docs.facts import facts
 from raycaster.docs.pages import HERE, need_clone, render_all
 from raycaster.docs.proofs import proofs
@@ -19,7 +19,6 @@ from raycaster.docs.tables import listed, outcomes, tables
 from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, Provenance, add_keep_option, keep, kept_outcome
 from raycaster.output import Console, Table, printable
-from raycaster.report import beside
 from raycaster.scene import packaged_scenes
 
 
@@ -42,8 +41,8 @@ def _measure_scaling(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def _measure_beside(arguments: argparse.Namespace, console: Console) -> int:
-    checkouts, failures = beside.checkouts_of(arguments.beside), []
-    rows = beside.measure_beside(beside.SCENE, checkouts, arguments.output / "beside", console, failures)
+    checkouts = beside.checkouts_of(arguments.beside)
+    rows, failures = beside.measure_beside(beside.SCENE, checkouts, arguments.output / "beside", console)
     keep(arguments, {"designs": rows}, {"scene": beside.SCENE}, provenance)
     return int(bool(failures))
 

@@ -23,7 +23,7 @@ from raycaster.cli.commands import COMMANDS
 from raycaster.configuration import Configuration
 from raycaster.convert.provenance import ROOT, Provenance, verilog_digest
 from raycaster.digests import code_digest
-from raycaster.docs import engine_figures, scaling
+from raycaster.docs import beside, engine_figures, scaling
 from raycaster.errors import UserError
 from raycaster.fpga import area, bitstream, fit, tiny_tapeout
 from raycaster.jobs import processes, run_jobs
@@ -31,7 +31,6 @@ from raycaster.outcomes import RESULTS, Check, Digests, Outcome, Published, kept
 from raycaster.output import Console
 from raycaster.play import game
 from raycaster.report import __main__ as report
-from raycaster.report import beside
 from raycaster.sim import scenes
 from raycaster.verif import everything
 from raycaster.verif.coverage import measure as coverage

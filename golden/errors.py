@@ -187,38 +187,3 @@ def _summary(
         tightest=float((errors[bounded] / bounds[bounded]).max()) if bounded.any() else 0.0,
         exceeded=exceeded,
     )
-
-
-def conditions(
-    rectangles: Rectangles, camera: Sequence[int], slopes: np.ndarray, perfect: Trace
-) -> tuple[np.ndarray, ...]:
-    """Return the condition number of each intersection: how far a hit moves per unit of a slope's error.
-
-    A ray hits at P[u] = E[u] + D[u] t with t = n / e and e = D[a]. A change of D[u] moves it by t along u, one of D[a]
-    by t |D[u] / e|; the condition number is the greatest of these. Mirrors do not change it, as t continues through
-    them.
-
-    Args:
-        rectangles: the table.
-        camera: where the rays start, in world units.
-        slopes: int (rays, 3): slopes of the rays, none of them all 0.
-        perfect: exact trace of the rays.
-
-    Returns:
-        By depth of reflection, float (rays,): in world units; NaN where nothing is hit.
-    """
-    magnitude = np.abs(np.asarray(slopes))
-    # Along the steepest axis, whose slope is not 0.
-    steepest = magnitude.argmax(axis=1)[:, None]
-    start = np.take_along_axis(np.broadcast_to(np.asarray(camera, dtype=float), magnitude.shape), steepest, axis=1)
-    t = np.zeros(len(magnitude))
-    found = []
-    for winner, points, denominator in zip(perfect.winners, perfect.points, perfect.denominators, strict=True):
-        hit = winner >= 0
-        place = np.take_along_axis(points, steepest, axis=1) / np.where(hit, denominator, 1)[:, None]
-        t = t + (np.abs(place - start) / np.take_along_axis(magnitude, steepest, axis=1))[:, 0]
-        start = place
-        across = magnitude.copy()
-        across[np.arange(len(winner)), rectangles.axes[winner]] = 0
-        found.append(np.where(hit, t * np.maximum(1, across.max(axis=1) / np.where(hit, denominator, 1)), np.nan))
-    return tuple(found)

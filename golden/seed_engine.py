@@ -35,6 +35,10 @@ class SeedModel(Model):
 
     looks: Collection[str] = field(default=SEED.looks, kw_only=True)
 
+    def bound(self, origin: np.ndarray, slope: np.ndarray, way: np.ndarray) -> np.ndarray:
+        """Bound the error of a primary ray's hit point, in world units: one unit in the last place, or half of one."""
+        return np.full(way.shape, (1 if self.rounding == "truncate" else 0.5) / (1 << self.fraction_bits))
+
     def meetings(
         self, rectangles: Rectangles, origin: np.ndarray, slope: np.ndarray, *, keep: bool
     ) -> Iterator[Meeting]:

@@ -9,12 +9,11 @@ import importlib.metadata
 import os
 import platform
 from collections.abc import Mapping, Sequence
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from raycaster.configuration import Rounding, configure
+from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
 from raycaster.fpga.cells import DECIDES, TOOLS
@@ -22,13 +21,12 @@ from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, Check, Outcome, Published, add_keep_option, keep, kept_outcome, table
 from raycaster.output import Console
-from raycaster.report.acne import shadow_chapter
-from raycaster.report.designs import design_chapter, find_designs, of_kept, to_keep
+from raycaster.report.arithmetics import arithmetic_chapter
+from raycaster.report.designs import Spreads, design_chapter, find_designs, to_keep
 from raycaster.report.errors import REFLECTIONS, error_chapter, find_pictures
 from raycaster.report.extent import Extent, extent
-from raycaster.report.hardware import describe
 from raycaster.report.omissions import omission_chapter
-from raycaster.report.page import Chapter, Section, write
+from raycaster.report.page import Chapter, Data, Section, Table, write
 from raycaster.report.stability import stability_chapter
 from raycaster.report.statistics import RESAMPLED, RESAMPLING_SEED, Spread
 from raycaster.report.sweep import Sweep
@@ -64,27 +62,26 @@ def write_report(directory: Path, what: Extent, sweep: Sweep, command_line: str)
     if not scenes:
         raise UserError(f"{SCENES}: contains no scene files; run this in the project directory")
     pictures = find_pictures(what, scenes, sweep)
-    shares: dict[tuple[int, Rounding], list[float]] = {
-        (f, r): found for r, of in pictures.all_shares.items() for f, found in of.items()
-    }
-    designs = find_designs(what, {key: float(np.mean(found)) for key, found in shares.items()}, sweep)
+    spreads: Spreads = {(f, r): Spread.of(found) for r, of in pictures.all_shares.items() for f, found in of.items()}
+    designs = find_designs(what.rounded, what.exact, spreads, sweep)
     stability, of_cases = stability_chapter(what, sweep)
     page = sum(
         (
-            design_chapter(designs, {key: Spread.of(found) for key, found in shares.items()}),
+            design_chapter(designs, spreads),
             error_chapter(pictures),
             stability,
-            shadow_chapter(what, scenes),
+            arithmetic_chapter(what, scenes, sweep),
             omission_chapter(what, scenes, sweep),
-            Chapter([_method(what, command_line)]),
+            Chapter([_method(what, sweep, command_line)]),
         ),
         Chapter(),
     )
     return write(page, directory), {"designs": to_keep(designs), "alarms": len(page.alarms), **of_cases}
 
 
-def _method(what: Extent, command_line: str) -> Section:
+def _method(what: Extent, sweep: Sweep, command_line: str) -> Section:
     versions = ", ".join(f"{name} {importlib.metadata.version(name)}" for name in PACKAGES)
+    spent = [[kind, *of] for kind, of in sweep.spent().items()]
     when = datetime.datetime.now(datetime.UTC).date().isoformat()
     return Section(
         "Method",
@@ -97,11 +94,13 @@ def _method(what: Extent, command_line: str) -> Section:
             "check that again. CSV rows for single measurements include the command that repeats them. For a picture, "
             "it is `python -m raycaster.report.points picture SCENE --fraction-bits F --rounding R --reflections N`, "
             "where SCENE is a file, seed:NUMBER or case:NAME; pictures.csv, next to this page, lists all pictures.",
-            "Results are stored next to the page, each with a digest of the sources that it depends on. They are "
-            "computed again only when these sources have changed.",
+            "Results are kept next to the page, each with a digest of the sources that it depends on, and computed "
+            "again only when these sources have changed.",
             "Cell counts are Yosys's for a Lattice ECP5, before placement. Simulations run the converted Verilog in "
             "Verilator. SSIM and PSNR are computed by scikit-image.",
+            f"All points took {sum(seconds for _, _, seconds in spent) / 60:.0f} minutes of processor time.",
         ],
+        tables=[Table.of(Data("points", ("kind of point", "points", "processor time, s"), spent))],
     )
 
 
@@ -111,7 +110,7 @@ def command_parser() -> CommandParser:
     parser.add_argument(
         "--output", type=Path, default=Path("build/report"), help="directory of the pages (default: %(default)s)"
     )
-    parser.add_argument("--quick", action="store_true", help="compute fewer points, in less than three minutes")
+    parser.add_argument("--quick", action="store_true", help="compute fewer points, in two minutes on two cores")
     add_job_options(parser, os.cpu_count() or 1)
     add_keep_option(parser)
     return parser
@@ -130,10 +129,11 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
 
 def _error_and_time(kept: Outcome) -> str:
     """Tabulate the best designs, which were all simulated and counted."""
-    rows = [
-        [describe(one.config), one.cells, f"{one.pixel_ns:.2f}", f"{one.frame_ms:.2f}", f"{one.error:.4%}"]
-        for one in of_kept(kept.figures["designs"]).best
-    ]
+    rows = []
+    for row in filter(itemgetter("best"), kept.figures["designs"]):
+        config, ms, share = configure(**row["options"]), row["frame_ms"], row["wrong_share"]
+        pixel_ns = ms * 1e6 / config.screen_geometry.columns / config.screen_geometry.rows
+        rows.append([config.facts.describe(config), row["luts"], f"{pixel_ns:.2f}", f"{ms:.2f}", f"{share:.4%}"])
     return table(["design", "LUT4", "ns per pixel", "ms per frame", "mean share of wrong pixels"], rows)
 
 
@@ -161,5 +161,5 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 1
     scope = {"quick": arguments.quick, "reflections": REFLECTIONS}
     keep(arguments, figures, scope, lambda _: _provenance(figures), "placing and routing")
-    console.print(f"{page}, with report.md, plots and CSV files next to it")
+    console.print(f"{page}, with plots and CSV files next to it")
     return 0

@@ -1,148 +1,124 @@
 # SPDX-License-Identifier: MIT
-"""Chapter on designs: error against run time and cells, for all engines."""
+"""Chapter on designs: work-precision diagrams, error against run time, cells and simulation time, for all engines."""
 
 from __future__ import annotations
 
+import itertools
+import statistics
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from operator import attrgetter
-from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
 
 from raycaster.configuration import OPTIONS, Configuration, Rounding, configure
 from raycaster.convert.take_home import TOP
-from raycaster.report import hardware, plots
-from raycaster.report.extent import Extent
-from raycaster.report.hardware import Candidate, describe, frontier, predicted_cycles, unit_of
+from raycaster.fpga.area import with_units
+from raycaster.report import plots
+from raycaster.report.hardware import Candidate, frontier
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
-from raycaster.report.points import UNITS, Point
+from raycaster.report.points import UNITS, Point, predicted_cycles
 from raycaster.report.statistics import Spread
 from raycaster.report.sweep import Sweep
 
-WORST_SCENE = Path("scenes/mirror_room.toml")
+WORST_SCENE = "scenes/mirror_room.toml"
 """Scene for the simulations: it fills the designs' rectangle tables, so no row of another scene takes longer."""
 
-cells, time = attrgetter("cells"), attrgetter("pixel_ns")
+RUNS = 5
+"""Number of simulations by which a design's simulation time is measured."""
 
-Errors = Mapping[tuple[int, Rounding], float]
+COSTS = "frame_ms", "work", "cells"
+"""Attributes of a design that are its cost; on each frontier, one of them is set against the error."""
+
+Spreads = Mapping[tuple[int, Rounding], Spread]
+"""Distributions of the share of wrong pixels, by fraction bits and rounding."""
 
 
 @dataclass(frozen=True)
 class Designs:
-    """All designs considered, and the best of them."""
+    """All designs considered."""
 
     every: Sequence[Candidate]
-    by_time: Sequence[Candidate]
-    """Frontier of the seed engine's designs by time and error."""
 
-    by_cells: Sequence[Candidate]
-    """Frontier of the seed engine's designs by cells and error."""
+    @property
+    def rounded(self) -> list[Candidate]:
+        """Designs that round, and have errors."""
+        return [one for one in self.every if one.config.facts.divides]
 
-    without_error: Sequence[Candidate]
-    """Frontier of the designs without error by time and cells."""
+    @property
+    def exact(self) -> list[Candidate]:
+        """Designs without error."""
+        return [one for one in self.every if not one.config.facts.divides]
 
-    said: str = ""
+    def by(self, cost: str) -> list[Candidate]:
+        """Return the frontier of the designs that round, by one of `COSTS` and error, ordered by cost."""
+        return frontier(self.rounded, cost, "error")
 
     @property
     def best(self) -> list[Candidate]:
-        """Designs on any of the frontiers, without duplicates."""
-        return list(dict.fromkeys([*self.without_error, *self.by_time, *self.by_cells]))
+        """Designs on any of the frontiers, without duplicates; those without error first."""
+        of_rounded = itertools.chain.from_iterable(map(self.by, COSTS))
+        return list(dict.fromkeys([*frontier(self.exact, "frame_ms", "cells"), *of_rounded]))
 
 
 def to_keep(found: Designs) -> list[dict[str, Any]]:
     """Return a row per design with the figures for the manual's table and plot, and the non-default options."""
+    best = found.best
     return [
         {
-            "design": describe(one.config),
-            "options": {
-                name: value
-                for name, option in OPTIONS.items()
-                if (value := getattr(one.config, name)) != option.default
-            },
-            "luts": one.cells,
-            "frame_cycles": one.frame_cycles,
-            "frame_ms": one.frame_ms,
-            "wrong_share": one.error,
-            "found": one.is_found,
-            "best": one in found.best,
+            "design": one.title,
+            "options": {k: v for k, option in OPTIONS.items() if (v := getattr(one.config, k)) != option.default},
+            "luts": one.cells, "frame_cycles": one.frame_cycles,
+            "frame_ms": one.required_ms,
+            "wrong_share": one.error, "found": one.is_found, "best": one in best,
         }
         for one in found.every
     ]  # fmt: skip
 
 
 def of_kept(rows: Sequence[Mapping[str, Any]]) -> Designs:
-    """Restore the designs from the rows of `to_keep`."""
-    every, best = [], []
+    """Restore the designs from the rows of `to_keep`, except any with culling, whose time depends on the scene."""
+    every = []
     for row in rows:
-        one = Candidate(configure(**row["options"]), row["wrong_share"], estimated=row["luts"])
+        one = Candidate(configure(**row["options"]), row["wrong_share"], row["luts"])
         if row["found"]:
             one = replace(one, counted={"cells": row["luts"]}, timing={"frame_cycles": row["frame_cycles"]})
-        every.append(one)
-        best += [one] if row["best"] else []
-    seeds, others = _by_error(best)
-    return Designs(every, frontier(seeds, "pixel_ns", "error"), frontier(seeds, "cells", "error"), others)
-
-
-def _by_error(every: Sequence[Candidate]) -> tuple[list[Candidate], list[Candidate]]:
-    """Separate the designs that round from the designs without error."""
-    rounded = [one for one in every if one.config.facts.divides]
-    return rounded, [one for one in every if not one.config.facts.divides]
+        every += [] if one.config.culling else [one]
+    return Designs(every)
 
 
 def error_and_time(found: Designs) -> Figure:
     """Draw the first plot of the report, which the README shows too."""
-    ends = [min(found.without_error, key=measure) for measure in (cells, time)]
-    labelled = dict.fromkeys([*found.by_time, *ends])
-    return plots.designs(found.every, "pixel_ns", "error", found.by_time, list(labelled))
+    return plots.work_precision(found.rounded, found.exact, "frame_ms", found.by("frame_ms"))
 
 
-def find_designs(what: Extent, errors: Errors, sweep: Sweep) -> Designs:
-    """Estimate all designs; simulate and count the best ones until no estimate is left among them.
+def find_designs(
+    rounded: Sequence[Configuration], exact: Sequence[Configuration], spreads: Spreads, sweep: Sweep
+) -> Designs:
+    """Estimate the designs that round; simulate and count the best until no estimate is left on a frontier.
 
     Args:
-        what: extent of the sweep.
-        errors: mean share of wrong pixels, by fraction bits and rounding.
+        rounded: designs of the seed engine.
+        exact: designs without error, all of which are simulated and counted.
+        spreads: distributions whose means are the designs' errors.
         sweep: computes points.
     """
+    base = max(rounded, key=lambda config: (config.units, -config.fraction_bits, -config.divider_bits))
+    units = {one: Point("cells", UNITS["seed"], with_units(one, 1)) for one in rounded}
+    counted = sweep("cells of units", [_cells_point(base), *units.values()])
+    alone = {config: counted[point]["cells"] for config, point in units.items()}
+    shared = counted[_cells_point(base)]["cells"] - base.units * alone[base]
     seeds = [
-        Candidate(config, errors[config.fraction_bits, config.rounding])
-        for config in hardware.seed_designs(what.design_fractions, what.units, what.screen)
+        Candidate(one, spreads[one.fraction_bits, one.rounding].mean, shared + one.units * alone[one])
+        for one in rounded
     ]
-    base = configure(units=max(what.units), screen=what.screen, culling=False)
-    units = {
-        config: Point("cells", UNITS[config.engine], config)
-        for config in dict.fromkeys(unit_of(one) for one in [*(one.config for one in seeds), base])
-    }
-    whole = _cells_point(base)
-    found = sweep("cells of units", [whole, *units.values()])
-    alone = {config: found[point]["cells"] for config, point in units.items()}
-    seeds = hardware.with_estimates(seeds, found[whole], base, alone)
-    # The page lists every design without error, so none of them stays an estimate.
-    others = [*hardware.exact_designs(what.exact_units, what.screen), *hardware.beam_designs(what.screen)]
-    exacts = _find([Candidate(config, 0.0) for config in others], sweep)
-    culled = [
-        Candidate(config, errors[config.fraction_bits, config.rounding] if config.facts.divides else 0.0)
-        for config in hardware.culled_designs(what.design_fractions, what.screen)
-        if config.engine in what.culled
-    ]
-    culled = _find(culled, sweep)
-    while True:
-        by_time, by_cells = (frontier(seeds, name, "error")[: what.frontier] for name in ("pixel_ns", "cells"))
-        missing = [one for one in dict.fromkeys([*by_time, *by_cells]) if not one.is_found]
-        if not missing:
-            break
+    exacts = _find([Candidate(one, 0.0) for one in exact], sweep)
+    found = Designs([*seeds, *exacts])
+    while missing := [one for one in found.best if not one.is_found]:
         now = dict(zip(missing, _find(missing, sweep), strict=True))
         seeds = [now.get(one, one) for one in seeds]
-    off = [one.estimated / one.counted["cells"] - 1 for one in seeds if one.counted and one.estimated]
-    said = (
-        f"{len(off)} designs of the seed engine are on a frontier. Each of these, and each of the {len(exacts)} "
-        f"designs of the other engines, was simulated with {WORST_SCENE.stem}, and its cells were counted. For the "
-        f"other {len(seeds) - len(off)} designs, the cells of the shared part and of each unit are added up. "
-        f"Compared with the counts, such estimates are off by {min(off):+.1%} to {max(off):+.1%}."
-    )
-    return Designs([*seeds, *exacts, *culled], by_time, by_cells, frontier(exacts, "pixel_ns", "cells"), said)
+        found = Designs([*seeds, *exacts])
+    return found
 
 
 def _cells_point(config: Configuration) -> Point:
@@ -150,7 +126,7 @@ def _cells_point(config: Configuration) -> Point:
 
 
 def _time_point(config: Configuration) -> Point:
-    return Point("time", str(WORST_SCENE), config)
+    return Point("time", WORST_SCENE, config, RUNS)
 
 
 def _find(candidates: Sequence[Candidate], sweep: Sweep) -> list[Candidate]:
@@ -164,98 +140,89 @@ def _find(candidates: Sequence[Candidate], sweep: Sweep) -> list[Candidate]:
 
 
 COLUMNS = (
-    "design", "wrong pixels: mean, %", "median, %", "maximum, %", "LUT4", "multipliers", "ns per pixel", "ms per frame",
-    "clock", "simulation, s",
+    "design", "wrong pixels: mean, %", "median, %", "maximum, %", "LUT4", "LUT4 estimated", "registers", "multipliers",
+    "cycles per frame", "clock, MHz", "clock", "ms per frame", "LUT4 x s", "simulation: median, s", "minimum, s",
+    "maximum, s", "pixels unlike the model", "command",
 )  # fmt: skip
-EVERY_COLUMNS = (
-    "engine", "F", "rounding", "quotient bits per cycle", "units", "culling", "screen", "mean share of wrong pixels",
-    "LUT4", "LUT4 estimated", "registers", "multipliers", "cycles per frame", "simulated and counted", "ns per pixel",
-    "ms per frame", "clock MHz", "routed MHz", "simulation, s", "pixels unlike the model", "on a frontier",
-    "timing command", "cells command",
-)  # fmt: skip
+SHOWN = 0, 1, 3, 4, 7, 8, 9, 10, 11, 12, 13
+"""Columns on the page."""
 
 
-def design_chapter(found: Designs, spreads: Mapping[tuple[int, Rounding], Spread]) -> Chapter:
-    """Return the chapter; it takes the distributions of the share of wrong pixels, by fraction bits and rounding."""
-    every, best = found.every, found.best
-    rounded, exact = _by_error(every)
-    fewest, fastest = (min(found.without_error, key=measure) for measure in (cells, time))
-    by_cells = list(dict.fromkeys([*found.by_cells, fewest, fastest]))
-    data = Data("designs", EVERY_COLUMNS, [_whole_row(one, one in best) for one in every])
+def design_chapter(found: Designs, spreads: Spreads) -> Chapter:
+    """Return the chapter."""
+    rounded, exact, best = found.rounded, found.exact, found.best
+    shown = [one for one in [*exact, *rounded] if one.is_found]
+    estimates = [one for one in rounded if not one.is_found]
+    data = Data("designs", COLUMNS, [_row(one, spreads) for one in [*shown, *estimates]])
+    table = Table(data, [COLUMNS[at] for at in SHOWN], [[row[at] for at in SHOWN] for row in data.rows[: len(shown)]])
+    sums = [one.estimated / one.cells - 1 for one in shown if one.estimated]
+    captions = {
+        "frame_ms": "Error against time per frame. Filled: at the clock that the design reached when it was placed and "
+        "routed. Hollow: at the clock that its monitor requires.",
+        "work": "Error against cells times time per frame.",
+        "cells": "Error against cells.",
+        "simulated_s": f"Error against the time per frame in Verilator, on one core: median of {RUNS} runs, and bars "
+        "from minimum to maximum.",
+    }
     drawn = [
-        Plot(name, caption, figure, data)
-        for name, figure, caption in (
-            ("work_precision", error_and_time(found),
-             "Error against computing time per pixel, at the clock that the design needs."),
-            ("cells_precision", plots.designs(every, "cells", "error", found.by_cells, by_cells),
-             "Error against cells."),
-            ("cells_time", plots.designs(every, "pixel_ns", "cells", found.without_error, exact),
-             "Cells against time."),
-        )
-    ]  # fmt: skip
-    rows = [_row(one, spreads) for one in dict.fromkeys([*exact, *best, *rounded]) if one.is_found]
-    timed = [(one.config, one.timing) for one in every if one.timing]
-    wrong = sum(timing["wrong"] for _, timing in timed)
-    off = sum(timing["frame_cycles"] != predicted_cycles(config) for config, timing in timed if not config.culling)
-    estimated = sum(not one.is_found for one in best)
-    beaten = [_is_beaten(one, exact) for one in rounded]
+        Plot(f"work_{cost}", caption, plots.work_precision(rounded, exact, cost, line), data)
+        for cost, caption in captions.items()
+        for line in [found.by(cost) if cost in COSTS else []]
+    ]
+    wrong = sum(one.timing["wrong"] for one in shown if one.timing)
+    off = sum(one.frame_cycles != predicted_cycles(one.config) for one in shown)
+    beaten = [
+        any(other.cells <= one.cells and other.required_ms <= one.required_ms for other in exact) for one in rounded
+    ]
     said = [
-        found.said,
-        f"{len(best)} designs are on a frontier, {estimated} of them only estimated. In simulation, {off} designs "
-        f"took more or fewer cycles than predicted, and {wrong} pixels differ from the golden model.",
-        f"Among the {len(rounded)} designs of the seed engine, {sum(beaten)} are neither smaller nor faster than some "
-        "design without error.",
+        f"{len(best)} designs are on a frontier. In simulation, {off} designs took more or fewer cycles than "
+        f"predicted, and {wrong} pixels differ from the golden model.",
+        f"Among the {len(rounded)} designs of the seed engine, {sum(beaten)} are neither smaller nor, at the "
+        "required clock, faster than some design without error.",
+    ]
+    ends = {"smallest": min(exact, key=lambda one: one.cells), "fastest": min(exact, key=lambda one: one.frame_ms)}
+    words = (
+        f"the {which} is {one.title}, with {one.cells:,} LUT4 and {one.frame_ms:.3g} ms per frame"
+        for which, one in ends.items()
+    )
+    verdict = "No design that rounds is worth its error. " if all(beaten) else ""
+    text = (
+        "Work-precision diagrams, with one reflection. The upper panel shows the designs that round: the mean share of "
+        "wrong pixels against the cost. The lower panel shows the designs without error, on the same axis. Grey dots "
+        "are estimates; a line is a frontier, on which no other design that rounds is better in one respect without "
+        "being worse in the other. Labels: fraction bits F and rounding (n nearest, t truncate) for the seed engine, "
+        "units for the exact engine, rows of the picture for the beam engine, x2 with two pixels per clock. The seed "
+        "and exact engines draw 320x240 pixels; the beam engine computes every pixel that the monitor shows."
+    )
+    routed = ", ".join(one.title for one in shown if one.is_routed) or "no designs"
+    tuned = [
+        f"Placed and routed, some for several boards or with several seeds, of which the slowest counts: {routed}. All "
+        "other times are for the clock that the monitor requires, which the designs may miss or exceed.",
+        "Tuned, within the row budget: the seed engine has 20 or 32 units and up to 3 quotient bits per cycle, the "
+        "exact engine 4 to 16 units. Nothing was chosen for a scene, and all have the same options of Yosys and "
+        "Verilator.",
+        f"{len(sums)} of {len(rounded)} designs of the seed engine were counted and simulated; by its estimate, no "
+        "other is on a frontier. An estimate adds up the cells of the shared part and of each unit, synthesised "
+        f"once; estimates differ from the counts by {min(sums):+.1%} to {max(sums):+.1%}.",
+        "Left out: other numbers of units and fraction bits; culling, whose time depends on the scene; turned cameras, "
+        "patterns, mirror strengths and lights, which cost cells in every engine; and energy, as the tools have no "
+        f"power model of the chip. Each simulation draws one frame of {WORST_SCENE}.",
+    ]
+    sections = [
+        Section("Error against run time", text, said, drawn, [table]),
+        Section("What was left out, and what was tuned", sentences=tuned),
     ]
     alarms = [f"In simulations of the designs, {wrong} pixels differ from the golden model."] if wrong else []
-    alarms += [f"{estimated} designs on a frontier were not simulated and counted."] if estimated else []
-    exactest = min(found.by_cells, key=attrgetter("error"))
-    summary = (
-        f"No design that rounds is worth its error. Without error, {describe(fewest.config)} is the smallest design, "
-        f"with {fewest.cells:,} LUT4 and {fewest.pixel_ns:.3g} ns per pixel, and {describe(fastest.config)} is the "
-        f"fastest, with {fastest.cells:,} LUT4 and {fastest.pixel_ns:.3g} ns. The most accurate of the seed engine's "
-        f"best designs, {describe(exactest.config)}, takes {exactest.cells:,} LUT4 and {exactest.pixel_ns:.3g} ns, and "
-        f"{exactest.error:.3%} of its pixels are wrong."
-        if all(beaten)
-        else f"The smallest design without error, {describe(fewest.config)}, takes {fewest.cells:,} LUT4 and "
-        f"{fewest.pixel_ns:.3g} ns per pixel."
-    )
-    text = (
-        "Each mark is a design that meets its row budget, with one reflection. Filled marks were simulated with "
-        f"{WORST_SCENE.stem} and had their cells counted; hollow marks are estimates. Times come from the hardware's "
-        "own counter of busy cycles, at the clock that the design needs for its monitor; the table shows which designs "
-        "were placed and routed for this clock. Lines connect designs on a frontier: no other design is better in one "
-        "respect without being worse in the other. Labels: fraction bits and rounding (n nearest, t truncate) for the "
-        "seed engine, units for the exact engine, rows of the picture for the beam engine, x2 with two pixels per "
-        "clock. Small marks have culling, and their time is for this scene. There are no energy figures, because the "
-        "tools have no power model of the chip."
-    )
-    sections = [
-        Section("Error against run time", text, said, drawn[:1]),
-        Section("Cells", plots=drawn[1:], tables=[Table.of(Data("best", COLUMNS, rows))]),
-    ]
-    return Chapter(sections, alarms, [summary])
+    return Chapter(sections, alarms, [f"{verdict}Among the designs without error, {', and '.join(words)}."])
 
 
-def _row(one: Candidate, spreads: Mapping[tuple[int, Rounding], Spread]) -> list:
+def _row(one: Candidate, spreads: Spreads) -> list:
     config, counted, timing = one.config, one.counted or {}, one.timing or {}
     spread = spreads[config.fraction_bits, config.rounding] if config.facts.divides else Spread(0, 0, 0, 0)
-    row = [describe(config), *(round(100 * share, 4) for share in (spread.mean, spread.median, spread.most))]
-    row += [one.cells, counted["multipliers"], one.pixel_ns, one.frame_ms]
-    return [*row, hardware.clock_words(config), timing["seconds"]]
-
-
-def _whole_row(one: Candidate, is_best: bool) -> list:
-    config, counted, timing = one.config, one.counted or {}, one.timing or {}
-    quotients = [config.fraction_bits, config.rounding, config.divider_bits]
-    screen = config.screen_geometry
     return [
-        config.engine, *(quotients if config.facts.divides else [None] * 3), config.units, int(bool(config.culling)),
-        f"{screen.columns}x{screen.rows}", one.error, counted.get("cells"), one.estimated, counted.get("registers"),
-        counted.get("multipliers"), one.frame_cycles, "yes" if one.is_found else "no", one.pixel_ns, one.frame_ms,
-        screen.clock_hz / 1e6, hardware.routed_clocks().get(config.name), timing.get("seconds"), timing.get("wrong"),
-        "yes" if is_best else "no", _time_point(config).command, _cells_point(config).command,
+        one.title, *(round(100 * share, 4) for share in (spread.mean, spread.median, spread.most)),
+        counted.get("cells"), one.estimated or None, counted.get("registers"), counted.get("multipliers"),
+        one.frame_cycles, one.clock_mhz, "routed" if one.is_routed else "required", one.frame_ms, one.work,
+        *(of(one.seconds) if one.seconds else None for of in (statistics.median, min, max)), timing.get("wrong"),
+        _time_point(config).command,
     ]  # fmt: skip
-
-
-def _is_beaten(one: Candidate, exact: Sequence[Candidate]) -> bool:
-    return any(other.is_found and other.cells <= one.cells and other.pixel_ns <= one.pixel_ns for other in exact)

@@ -13,7 +13,7 @@ from raycaster.configuration import Rounding
 from raycaster.report import plots
 from raycaster.report.extent import Extent
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
-from raycaster.report.points import GRID, SEED, Point, name_of, picture, scene_of
+from raycaster.report.points import SEED, Point, name_of, picture, scene_of
 from raycaster.report.statistics import Spread, slope
 from raycaster.report.sweep import Sweep
 
@@ -21,11 +21,8 @@ ROUNDINGS: tuple[Rounding, ...] = ("truncate", "nearest")
 REFLECTIONS = 1
 """Number of reflections in the pictures by which designs are compared."""
 
-FEW = 1e-3
-"""Share of wrong pixels that counts as few: one in a thousand."""
-
-EARLY = 4
-"""Fraction bits up to which wrong pixels come mostly from rounding, not from ties that no number of bits resolves."""
+FEW, EARLY = 1e-3, 4
+"""Share of wrong pixels that counts as few; fraction bits up to which most come from rounding, not from ties."""
 
 KINDS = {
     "greatest bound": {"color": plots.GREY, "linestyle": "--", "marker": "_"},
@@ -35,39 +32,28 @@ KINDS = {
 }
 """Errors by depth of reflection that are plotted, and their lines."""
 
-Results = Mapping[Point, Mapping[str, Any]]
-Shares = Mapping[Rounding, Mapping[int, list[float]]]
-"""Shares of wrong pixels of every picture, by rounding and fraction bits."""
+Found = Sequence[Mapping[str, Any]]
 
 
 @dataclass(frozen=True)
 class Pictures:
-    """Every picture of random worlds and packaged scenes, whose sources are given."""
+    """Every picture of random worlds and packaged scenes, by their sources."""
 
     what: Extent
-    worlds: Sequence[str]
-    scenes: Sequence[str]
-    results: Results
+    worlds: list[str]
+    scenes: list[str]
+    results: Mapping[Point, Mapping[str, Any]]
+
+    def of(self, sources: Sequence[str], f: int, r: Rounding, reflections: int = REFLECTIONS) -> Found:
+        """Return the results for F and a rounding, one per source."""
+        return [self.results[picture(source, f, r, reflections)] for source in sources]
 
     @property
-    def every(self) -> list[str]:
-        """Sources of all worlds and scenes."""
-        return [*self.worlds, *self.scenes]
-
-    def of(
-        self, sources: Sequence[str], fraction: int, rounding: Rounding, reflections: int = REFLECTIONS
-    ) -> list[Mapping[str, Any]]:
-        """Return the results for one arithmetic, one per source."""
-        return [self.results[picture(source, fraction, rounding, reflections)] for source in sources]
-
-    def shares(self, sources: Sequence[str], *arithmetic: Any) -> list[float]:
-        """Return the shares of wrong pixels for one arithmetic, given as for `of`."""
-        return [one["wrong_share"] for one in self.of(sources, *arithmetic)]
-
-    @property
-    def all_shares(self) -> Shares:
-        """Shares for all worlds and scenes."""
-        return {r: {f: self.shares(self.every, f, r) for f in self.what.fractions} for r in ROUNDINGS}
+    def all_shares(self) -> Mapping[Rounding, Mapping[int, list[float]]]:
+        """Shares of wrong pixels of all worlds and scenes, by rounding and fraction bits."""
+        return {
+            r: {f: _shares(self.of(self.worlds + self.scenes, f, r)) for f in self.what.fractions} for r in ROUNDINGS
+        }
 
     @property
     def exceeded(self) -> int:
@@ -80,17 +66,12 @@ def find_pictures(what: Extent, scenes: Sequence[str], sweep: Sweep) -> Pictures
     worlds = [f"{SEED}{number}" for number in range(what.worlds)]
     shown = [scene for scene in scenes if not scene_of(scene).camera.turned]
     fewest, most = what.fractions[0], max(what.reflections)
-    points = [
-        picture(source, f, rounding, reflections)
-        for rounding in ROUNDINGS
-        for f in what.fractions
-        for sources, several in (
-            (worlds, {REFLECTIONS, most} if f == fewest else {REFLECTIONS}),
-            (shown, what.reflections),
-        )
-        for source in sources
-        for reflections in several
-    ]
+    points = []
+    for r in ROUNDINGS:
+        for f in what.fractions:
+            of_worlds, of_scenes = ({REFLECTIONS, most}, what.reflections) if f == fewest else ([REFLECTIONS],) * 2
+            for sources, several in ((worlds, of_worlds), (shown, of_scenes)):
+                points += [picture(source, f, r, reflections) for source in sources for reflections in several]
     # Group the pictures of a scene, because they share the exact one, which is cached.
     points.sort(key=lambda point: (point.what, point.config.reflections))
     return Pictures(what, worlds, shown, sweep("pictures", points))
@@ -102,63 +83,48 @@ def error_chapter(pictures: Pictures) -> Chapter:
         "scene", "F", "rounding", "reflections", "pixels", "wrong", "wrong share", "PSNR dB", "SSIM",
         "coordinates over bound", "command",
     )  # fmt: skip
-    rows = []
-    for point, result in pictures.results.items():
-        row = [name_of(point.what), point.config.fraction_bits, point.config.rounding, point.config.reflections]
-        row += [result[name] for name in ("pixels", "wrong", "wrong_share", "psnr", "ssim")]
-        rows.append([*row, sum(depth["exceeded"] for depth in result["depths"]), point.command])
-    by = pictures.all_shares
-    distribution, first = _distribution(pictures, by, Data("pictures", columns, rows))
-    trends, second = _trends(pictures, by)
+    rows = [
+        [name_of(one.what), one.config.fraction_bits, one.config.rounding, one.config.reflections,
+         *(of[name] for name in ("pixels", "wrong", "wrong_share", "psnr", "ssim")),
+         sum(depth["exceeded"] for depth in of["depths"]), one.command]
+        for one, of in pictures.results.items()
+    ]  # fmt: skip
+    distribution, first = _distribution(pictures, Data("pictures", columns, rows))
+    trends, second = _trends(pictures)
     alarms = [f"{pictures.exceeded} coordinates exceed their bound."] if pictures.exceeded else []
-    return Chapter([distribution, trends, _places(pictures)], alarms, [first, second])
+    return Chapter([distribution, trends], alarms, [first, second])
 
 
-def _distribution(pictures: Pictures, by: Shares, every: Data) -> tuple[Section, str]:
-    fractions, worlds = pictures.what.fractions, pictures.worlds
+def _shares(found: Found) -> list[float]:
+    return [one["wrong_share"] for one in found]
+
+
+def _distribution(pictures: Pictures, every: Data) -> tuple[Section, str]:
+    fractions, worlds, by = pictures.what.fractions, pictures.worlds, pictures.all_shares
     columns = (
         "F", "rounding", "wrong pixels, worlds: median, %", "mean, %", "maximum, %", "scenes: minimum, %",
         "median, %", "maximum, %", "PSNR dB, median", "SSIM, median", "SSIM, minimum",
         "pictures without wrong pixels, %",
     )  # fmt: skip
-    rows, pixels = [], []
-    ratios, likeness = ({rounding: {} for rounding in ROUNDINGS} for _ in range(2))
-    for rounding in ROUNDINGS:
+    rows, said = [], []
+    for r in ROUNDINGS:
         for f in fractions:
-            found = pictures.of(pictures.every, f, rounding)
-            pixels += [
-                [source, f, rounding, one["wrong_share"], one["psnr"], one["ssim"]]
-                for source, one in zip(pictures.every, found, strict=True)
-            ]
-            psnr = ratios[rounding][f] = [one["psnr"] for one in found if one["psnr"] is not None]
-            ssim = likeness[rounding][f] = [one["ssim"] for one in found]
-            of_worlds, of_scenes = (
-                Spread.of(pictures.shares(some, f, rounding)) for some in (worlds, pictures.scenes)
-            )  # fmt: skip
-            shares = of_worlds.median, of_worlds.mean, of_worlds.most, of_scenes.least, of_scenes.median, of_scenes.most
-            rows.append(
-                [
-                    f, rounding, *(round(100 * share, 4) for share in shares),
-                    round(float(np.median(psnr)), 1) if psnr else None,
-                    round(float(np.median(ssim)), 5), round(min(ssim), 4),
-                    round(100 * sum(not one["wrong"] for one in found) / len(found), 4),
-                ]
-            )  # fmt: skip
-    said = []
-    for rounding in ROUNDINGS:
-        medians = {f: float(np.median(by[rounding][f])) for f in fractions}
+            found = pictures.of(worlds + pictures.scenes, f, r)
+            some, all_scenes = (Spread.of(_shares(pictures.of(of, f, r))) for of in (worlds, pictures.scenes))
+            shares = some.median, some.mean, some.most, all_scenes.least, all_scenes.median, all_scenes.most
+            ssim, psnr = [one["ssim"] for one in found], [one["psnr"] for one in found if one["psnr"] is not None]
+            right = np.mean([not one["wrong"] for one in found])
+            likeness = [float(np.median(psnr)) if psnr else None, float(np.median(ssim)), min(ssim)]
+            rows.append([f, r, *(100 * share for share in shares), *likeness, 100 * float(right)])
+        medians = {f: float(np.median(by[r][f])) for f in fractions}
         good = [f for f in medians if all(medians[more] <= FEW for more in medians if more >= f)]
         least = f"from F = {good[0]}" if good else f"for no F up to {max(medians)}"
-        said.append(f"The median picture has at most {FEW:.1%} wrong pixels {least} (rounding: {rounding}).")
-
-    at_first, at_last = (
-        [f"{100 * share:.3g}%" for share in (found.median, found.mean, found.most)]
-        for found in (Spread.of(by["nearest"][f]) for f in (fractions[0], fractions[-1]))
-    )
+        said.append(f"The median picture has at most {FEW:.1%} wrong pixels {least} (rounding: {r}).")
+    low, high = (Spread.of(by["nearest"][f]) for f in (fractions[0], fractions[-1]))
     summary = (
-        f"With F = {fractions[0]}, rounding to nearest, the share of wrong pixels is {at_first[0]} in the median "
-        f"picture, {at_first[1]} on average and {at_first[2]} in the worst of {len(pictures.every)} pictures; with "
-        f"F = {fractions[-1]}, it is {at_last[0]}, {at_last[1]} and {at_last[2]}."
+        f"With F = {fractions[0]}, rounding to nearest, the share of wrong pixels is {low.median:.3%} in the median "
+        f"picture, {low.mean:.3%} on average and {low.most:.3%} in the worst picture; with "
+        f"F = {fractions[-1]}, it is {high.median:.3%}, {high.mean:.3%} and {high.most:.3%}."
     )
     text = (
         f"The seed engine's pictures are compared with exact arithmetic, with {REFLECTIONS} reflection, for "
@@ -166,101 +132,61 @@ def _distribution(pictures: Pictures, by: Shares, every: Data) -> tuple[Section,
         f"rows; six styles, in which ties, edges and slits are common) and the {len(pictures.scenes)} packaged scenes "
         "whose camera is not turned. The exact and beam engines have no wrong pixels."
     )
-    data = Data("shares", ("scene", "F", "rounding", "wrong share", "PSNR dB", "SSIM"), pixels)
+    shown = [picture(source, 0, "truncate", scene_of(source).reflections) for source in pictures.scenes]
     drawn = [
         Plot("shares", "Share of wrong pixels per picture, by fraction bits and rounding. Boxes span the quartiles, "
-             "lines are medians, dots are means, whiskers reach from minimum to maximum.", plots.shares(by), data),
-        Plot("likeness", "PSNR of the pictures with wrong pixels, and SSIM of all pictures: medians, and bands from "
-             "minimum to maximum.", plots.likeness({"PSNR, dB": ratios, "SSIM": likeness}), data),
+             "lines are medians, dots are means, whiskers reach from minimum to maximum.", plots.shares(by), every),
+        Plot("wrong_by_scene", "Wrong pixels in pink on the dimmed exact picture, with F = 0, truncated, and the "
+             "scene's own reflections.", plots.wrong_by_scene(shown),
+             Data("wrong_by_scene", ("scene", "command"), [[name_of(one.what), one.command] for one in shown])),
     ]  # fmt: skip
     tables = [Table.of(Data("distribution", columns, rows))]
-    return Section("Distribution of errors", text, said, drawn, tables, [every]), summary
+    return Section("Distribution of errors", text, said, drawn, tables), summary
 
 
-def _trends(pictures: Pictures, by: Shares) -> tuple[Section, str]:
+def _trends(pictures: Pictures) -> tuple[Section, str]:
     """Show that errors fall with fraction bits and grow with reflections."""
-    what = pictures.what
+    what, by = pictures.what, pictures.all_shares
     fractions, fewest, most = what.fractions, what.fractions[0], max(what.reflections)
-    early = [f for f in fractions if f <= EARLY]
-    depths = range(most + 1)
-    said, falls, grows = [], {}, {}
-    means: dict[str, dict[int, float]] = {r: {f: float(np.mean(by[r][f])) for f in fractions} for r in ROUNDINGS}
-    hits, rows = {}, {}
+    every, early, depths = pictures.worlds + pictures.scenes, [f for f in fractions if f <= EARLY], range(most + 1)
+    said, falls, grows, rows = [], {}, {}, {}
     for r in ROUNDINGS:
-        sums = [_sums(pictures.of(pictures.every, f, r), (0,)) for f in fractions]
-        totals, counts = (np.hstack(part) for part in zip(*sums, strict=True))
-        hits[r] = {f: float(total.sum() / count.sum()) for f, (total, count) in zip(fractions, sums, strict=True)}
-        falls[r] = slope(fractions, totals, counts, binary=True)
+        sums = [_sums(pictures.of(every, f, r), (0,)) for f in fractions]
+        falls[r] = slope(fractions, *(np.hstack(part) for part in zip(*sums, strict=True)), binary=True)
         pixels = slope(early, np.array([by[r][f] for f in early]).T, binary=True)
-        said.append(
-            f"Each fraction bit multiplies a hit point's mean error by 2 to the power of {falls[r]}, and, up to "
-            f"F = {early[-1]}, the share of wrong pixels by 2 to the power of {pixels} (rounding: {r})."
-        )
-    for r in ROUNDINGS:
-        found = pictures.of(pictures.every, fewest, r, most)
+        found = pictures.of(every, fewest, r, most)
         rows[r] = [_depth_row(found, depth) for depth in depths]
         grows[r] = slope(list(depths), *_sums(found, depths))
-        said.append(
+        said += [
+            f"Each fraction bit multiplies a hit point's mean error by 2 to the power of {falls[r]}, and, up to "
+            f"F = {early[-1]}, the share of wrong pixels by 2 to the power of {pixels} (rounding: {r}).",
             f"Each reflection increases a hit point's mean error by {grows[r]} world units at F = {fewest} "
-            f"(rounding: {r})."
-        )
+            f"(rounding: {r}).",
+        ]
     lines = {r: {kind: [row[kind] for row in rows[r]] for kind in KINDS} for r in ROUNDINGS}
-    depth_data = Data(
-        "hit_errors",
-        ("rounding", "reflections so far", *rows["truncate"][0]),
-        [[r, depth, *row.values()] for r in ROUNDINGS for depth, row in enumerate(rows[r])],
-    )
-    of_scenes = {r: {m: pictures.shares(pictures.scenes, fewest, r, m) for m in what.reflections} for r in ROUNDINGS}
+    by_depth = [[r, depth, *row.values()] for r in ROUNDINGS for depth, row in enumerate(rows[r])]
+    data = Data("hit_errors", ("rounding", "reflections so far", *rows["truncate"][0]), by_depth)
     summary = (
         f"A hit point's mean error halves with each fraction bit (2 to the power of {falls['nearest']}) and grows by "
         f"{grows['nearest'].slope:.2g} world units with each reflection at F = {fewest} (nearest). In "
         f"{len(pictures.results):,} pictures, {pictures.exceeded} coordinates exceed their derived bound."
     )
     text = (
-        "A hit point's coordinate u is off by at most d'[u] = d[u] + |D[u] / e| d[a] + q, where d is the error of the "
-        "ray's origin, D is the ray's slope, a is the axis of the plane, e is the slope along a, and q is one unit in "
-        "the last place (truncated) or half a unit (nearest). The bound holds for rays that hit the same rectangle as "
-        "the exact ray; other rays are counted as flips. Intervals come from a bootstrap over pictures."
+        "The forward error of a hit point is its distance from the exact one. Its coordinate u is off by at most "
+        "d'[u] = d[u] + |D[u] / e| d[a] + q, where d is the error of the ray's origin, D is the ray's slope, a is the "
+        "axis of the plane, e is the slope along a, and q is one unit in the last place (truncated) or half a unit "
+        "(nearest). The bound holds for rays that hit the same rectangle as the exact ray; other rays are counted as "
+        "flips. Intervals come from a bootstrap over pictures."
     )
-    drawn = [
-        Plot(
-            "hit_errors",
-            f"Errors of hit points by reflections so far, with F = {fewest}, over all pictures, and the greatest bound "
-            "of any ray.",
-            plots.by_depth(lines, KINDS, 3.4, "reflections so far", "hit point error, world units"),
-            depth_data,
-        ),
-        Plot(
-            "falling",
-            "Means over all pictures, by fraction bits.",
-            plots.falling(means, hits),
-            Data(
-                "falling",
-                ("rounding", "F", "mean share of wrong pixels", "mean error of a primary hit point, world units"),
-                [[r, f, means[r][f], hits[r][f]] for r in ROUNDINGS for f in fractions],
-            ),
-        ),
-        Plot(
-            "by_reflections",
-            f"Wrong pixels of the packaged scenes by reflections, with F = {fewest}; one dot per scene.",
-            plots.by_reflections(of_scenes),
-            Data(
-                "by_reflections",
-                ("scene", "rounding", "reflections", "wrong share", "command"),
-                [
-                    [name_of(source), r, m, share, picture(source, fewest, r, m).command]
-                    for r in ROUNDINGS
-                    for m in what.reflections
-                    for source, share in zip(pictures.scenes, of_scenes[r][m], strict=True)
-                ],
-            ),
-        ),
-    ]
-    title = "Error against fraction bits and reflections"
-    return Section(title, text, said, drawn, [Table.of(depth_data)]), summary
+    caption = (
+        f"Forward errors of hit points by reflections so far, with F = {fewest}, and the greatest bound of any ray."
+    )
+    figure = plots.by_depth(lines, KINDS)
+    title, plot = "Error against fraction bits and reflections", Plot("hit_errors", caption, figure, data)
+    return Section(title, text, said, [plot], [Table.of(data)]), summary
 
 
-def _sums(found: Sequence[Mapping], depths: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
+def _sums(found: Found, depths: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
     """Return the sum of the rays' errors and the number of rays, both (pictures, depths)."""
     means, counts = (
         np.array([[one["depths"][depth][name] for depth in depths] for one in found]) for name in ("mean", "rays")
@@ -268,7 +194,7 @@ def _sums(found: Sequence[Mapping], depths: Sequence[int]) -> tuple[np.ndarray, 
     return means * counts, counts
 
 
-def _depth_row(found: Sequence[Mapping], depth: int) -> dict[str, float]:
+def _depth_row(found: Found, depth: int) -> dict[str, float]:
     of = [one["depths"][depth] for one in found if one["depths"][depth]["rays"]]
     totals, counts = _sums(found, [depth])
     return {
@@ -280,34 +206,3 @@ def _depth_row(found: Sequence[Mapping], depth: int) -> dict[str, float]:
         "rays": int(counts.sum()),
         "flips": sum(one["depths"][depth]["flips"] for one in found),
     }
-
-
-def _places(pictures: Pictures) -> Section:
-    fewest = pictures.what.fractions[0]
-    blocks = {}
-    for r in ROUNDINGS:
-        found = pictures.of(pictures.worlds, fewest, r)
-        wrong = np.sum([one["where"] for one in found], axis=0).reshape(GRID)
-        blocks[r] = wrong * np.prod(GRID) / sum(one["pixels"] for one in found)
-    shown = [picture(source, 0, "truncate", scene_of(source).reflections) for source in pictures.scenes]
-    drawn = [
-        Plot(
-            "heat",
-            f"Share of wrong pixels in each block of the picture, over {len(pictures.worlds)} random worlds, with "
-            f"F = {fewest}.",
-            plots.heat(blocks),
-            Data(
-                "heat",
-                ("rounding", "row of blocks", "column of blocks", "wrong share"),
-                [[r, *place, float(share)] for r in ROUNDINGS for place, share in np.ndenumerate(blocks[r])],
-            ),
-        ),
-        Plot(
-            "wrong_by_scene",
-            "Packaged scenes whose camera is not turned: wrong pixels in pink on the dimmed exact picture, with F = 0, "
-            "truncated, and the scene's own reflections.",
-            plots.wrong_by_scene(shown),
-            Data("wrong_by_scene", ("scene", "command"), [[name_of(one.what), one.command] for one in shown]),
-        ),
-    ]
-    return Section("Positions of wrong pixels", plots=drawn)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Extent of the report: everything, or a sweep of less than three minutes."""
+"""Extent of the report: everything, or a sweep of two minutes."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from raycaster.configuration import LOOKS, MOST_REFLECTIONS, Configuration, configure
-from raycaster.engines import ENGINES
 from raycaster.golden.catalogue import Case, catalogue
+from raycaster.report.hardware import exact_designs, seed_designs
 
 CASE_REFLECTIONS = 2
 """Number of reflections in the catalogue's cases."""
@@ -25,11 +25,12 @@ class Extent:
     worlds: int
     """Number of random worlds."""
 
-    design_fractions: Sequence[int]
-    units: Sequence[int]
-    """Numbers of units for designs of the seed engine."""
+    rounded: Sequence[Configuration]
+    """Designs of the seed engine, the best of which are simulated and counted."""
 
-    exact_units: Sequence[int]
+    exact: Sequence[Configuration]
+    """Designs without error."""
+
     cases: Sequence[Case]
     case_fractions: Sequence[int]
     case_screen: str
@@ -40,35 +41,22 @@ class Extent:
     shown: Sequence[Configuration]
     """Designs that are simulated with every case that they can draw."""
 
-    screen: str
-    """Screen of the designs."""
-
-    frontier: int
-    """Maximum number of designs per frontier that are simulated and counted, from its start."""
-
-    culled: Sequence[str]
-    """Engines with which each scene is simulated with and without culling."""
-
-    left_scenes: int
-    """Maximum number of packaged scenes for which a design is reduced step by step."""
-
-    left_engine: str = "exact"
+    left: Sequence[str]
+    """Names of the packaged scenes for which a design is reduced step by step."""
 
 
 def extent(quick: bool) -> Extent:
-    """Return the full extent, or a quick one of less than three minutes."""
+    """Return the full extent, or a quick one of two minutes."""
     cases = catalogue(LOOKS)
     plain = [case for case in cases if not case.scene.lacks(())]
-    every = range(9)
     if quick:
         probed = configure(screen="tiny", units=16, reflections=CASE_REFLECTIONS, divider_bits=3, allow_underrun=True)
         return Extent(
-            fractions=(0, 2, 4), reflections=(0, 1, 2), worlds=24,
-            design_fractions=(0,), units=(16,), exact_units=(4, 16),
-            cases=cases, case_fractions=(0,), case_screen="tiny", probed_cases=plain[::12], probed=[probed], shown=[],
-            screen="tiny", frontier=1, culled=(), left_scenes=0,
+            fractions=(0, 2, 4), reflections=(0, 1, 2), worlds=24, rounded=seed_designs((0,), (16,), "tiny")[:1],
+            exact=exact_designs((4,), "tiny"), cases=cases, case_fractions=(0,), case_screen="tiny",
+            probed_cases=plain[::12], probed=[probed], shown=[], left=(),
         )  # fmt: skip
-    probed_designs = [
+    probed = [
         configure(reflections=CASE_REFLECTIONS, fraction_bits=f, rounding=r, divider_bits=3)
         for f, r in ((0, "truncate"), (4, "nearest"))
     ]
@@ -77,9 +65,8 @@ def extent(quick: bool) -> Extent:
         for engine, more in (("exact", {"light": True}), ("beam", {"scale": 1}))
     ]
     return Extent(
-        fractions=every, reflections=range(MOST_REFLECTIONS + 1), worlds=200,
-        design_fractions=every, units=(20, 32), exact_units=(4, 5, 8, 10, 16, 20, 32),
-        cases=cases, case_fractions=(0, 2, 4, 8), case_screen="vga", probed_cases=plain, probed=probed_designs,
-        shown=shown, screen="vga", frontier=100, left_scenes=100,
-        culled=[name for name, engine in ENGINES.items() if engine.line_buffered],
+        fractions=range(9), reflections=range(MOST_REFLECTIONS + 1), worlds=200,
+        rounded=seed_designs((0, 2, 4, 6, 8), (20, 32)), exact=exact_designs((4, 5, 8, 10, 16)), cases=cases,
+        case_fractions=(0, 4), case_screen="vga", probed_cases=plain, probed=probed, shown=shown,
+        left=("corners", "facing_mirrors", "pool", "evening", "shadow_hall"),
     )  # fmt: skip

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pages of the report: a self-contained one for a browser, and one in Markdown next to the plots."""
+"""Page of the report, self-contained, for a browser and for print, with its plots and tables in files next to it."""
 
 from __future__ import annotations
 
@@ -88,31 +88,23 @@ class Chapter:
 
     def __add__(self, other: Chapter) -> Chapter:
         """Append another chapter."""
-        return Chapter(
-            self.sections + other.sections, self.alarms + other.alarms, self.summary + other.summary
-        )  # fmt: skip
+        return Chapter(*(mine + theirs for mine, theirs in zip(vars(self).values(), vars(other).values(), strict=True)))
 
 
 def write(page: Chapter, directory: Path) -> Path:
-    """Write the plots and the data, `report.md`, and `index.html`, which embeds all; return its path."""
+    """Write the plots and the data, and `index.html`, which embeds all; return its path."""
     for section in page.sections:
         for data in (*section.files, *(each.data for each in (*section.plots, *section.tables))):
             data.write(directory)
         for plot in section.plots:
             plots.save(plot.figure, directory / f"{plot.name}.svg")
-    (directory / "report.md").write_text(_markdown(page))
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    template = environment.from_string(TEMPLATE.read_text())
+    names = {
+        "title": TITLE, "page": page, "show": show, "svg": lambda name: _inline(directory, name),
+        "encoded": lambda data: base64.b64encode((directory / f"{data.name}.csv").read_bytes()).decode(),
+    }  # fmt: skip
     path = directory / "index.html"
-    path.write_text(
-        template.render(
-            title=TITLE,
-            page=page,
-            show=show,
-            svg=lambda name: _inline(directory, name),
-            encoded=lambda data: base64.b64encode((directory / f"{data.name}.csv").read_bytes()).decode(),
-        )
-    )
+    path.write_text(environment.from_string(TEMPLATE.read_text()).render(names))
     return path
 
 
@@ -129,20 +121,3 @@ def _inline(directory: Path, name: str) -> Markup:
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r'(\bid="|href="#|url\(#)', rf"\1{name}-", svg)
     return Markup(re.sub(r'(?<= )(width|height)="[^"]*pt" ', "", svg, count=2))
-
-
-def _markdown(page: Chapter) -> str:
-    parts = [f"# {TITLE}", *(f"**{alarm}**" for alarm in page.alarms), _listed(page.summary)]
-    for section in page.sections:
-        parts += [f"## {section.title}", section.text, _listed(section.sentences)]
-        for plot in section.plots:
-            file = f"{plot.data.name}.csv"
-            parts += [f"![{plot.name}]({plot.name}.svg)", f"*{plot.caption}* [{file}]({file})"]
-        for table in section.tables:
-            lines = [table.columns, ["---"] * len(table.columns), *(map(show, row) for row in table.rows)]
-            parts.append("\n".join(f"| {' | '.join(line)} |" for line in lines))
-    return "\n\n".join(filter(None, parts)) + "\n"
-
-
-def _listed(sentences: Sequence[str]) -> str:
-    return "\n".join(f"- {sentence}" for sentence in sentences)

@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import wraps
 from itertools import pairwise
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Any, ParamSpec
+from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
 import numpy as np
@@ -17,35 +16,31 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
 from raycaster.configuration import Rounding
-from raycaster.engines import ENGINES, EXACT, SEED
+from raycaster.engines import EXACT, SEED
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong, diff_picture
 from raycaster.golden.seed_engine import SeedModel
-from raycaster.report.hardware import Candidate
 from raycaster.report.points import Point, name_of
 from raycaster.screens import SCREENS
 
 if TYPE_CHECKING:
     from matplotlib.typing import RcKeyType
 
-P = ParamSpec("P")
+    from raycaster.report.hardware import Candidate
 
 WIDTH = 4.6
 """Width in inches, a column of a printed page; 9-point text stays legible on a phone, at three quarters of the size."""
 
 STYLE: dict[RcKeyType, Any] = {
-    "font.size": 9,
-    "axes.titlesize": 9,
-    "legend.fontsize": 8,
-    "axes.grid": True,
-    "grid.alpha": 0.3,
-    "axes.axisbelow": True,
-    "svg.hashsalt": "raycaster",
-    "svg.fonttype": "none",
-}
+    "font.size": 9, "axes.titlesize": 9, "legend.fontsize": 8, "axes.grid": True, "grid.alpha": 0.3,
+    "axes.axisbelow": True, "svg.hashsalt": "raycaster", "svg.fonttype": "none",
+}  # fmt: skip
+styled = mpl.rc_context(STYLE)
+"""Decorator of functions that draw, so that they draw in the report's style."""
+
 LABEL_POINTS = 7.5
 
 VERMILION, BLUE, ORANGE, GREY = SEED.colour, EXACT.colour, "#E69F00", "#7f7f7f"
@@ -53,42 +48,36 @@ VERMILION, BLUE, ORANGE, GREY = SEED.colour, EXACT.colour, "#E69F00", "#7f7f7f"
 
 COLOURS = {"truncate": VERMILION, "nearest": BLUE}
 
+MARKS = {BLUE: "o", ORANGE: "s", VERMILION: "^", GREY: "D"}
+
+LEAST_RAYS = 1e-6
+"""Lower limit for drawing shares of all rays; smaller ones are drawn as 0."""
+
 LEAST_SHARE = 1e-5
 """Lower limit for drawing a picture's share of wrong pixels: below one pixel, so smaller shares are drawn as 0."""
 
-LEAST_MEAN = 1e-4
-"""Lower limit for drawing mean shares; smaller ones are drawn as 0."""
-
 WORDS = {
-    "pixel_ns": "time per pixel, ns",
+    "frame_ms": "time per frame, ms",
+    "work": "cells x time per frame, LUT4 x s",
     "cells": "cells, ECP5 LUT4",
+    "simulated_s": "simulation time per frame, s",
     "error": "mean share of wrong pixels",
 }
+CLOCKED = "frame_ms", "work"
+"""Costs that depend on the clock."""
 
 
 def new_figure(height: float, rows: int = 1, columns: int = 1, **options) -> tuple[Figure, np.ndarray]:
     """Create an empty figure of a height in inches, and its axes (rows, columns)."""
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(WIDTH, height), layout="constrained")
-        FigureCanvasAgg(figure)  # provides the sizes of texts
-        return figure, figure.subplots(rows, columns, squeeze=False, **options)
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    FigureCanvasAgg(figure)  # provides the sizes of texts
+    return figure, figure.subplots(rows, columns, squeeze=False, **options)
 
 
+@styled
 def save(figure: Figure, path: Path) -> None:
     """Write a reproducible SVG, without a date."""
-    with mpl.rc_context(STYLE):
-        figure.savefig(path, metadata={"Date": None})
-
-
-def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Decorate a function that draws a figure, so that it draws in the report's style."""
-
-    @wraps(draw)
-    def drawn(*arguments: P.args, **options: P.kwargs) -> Figure:
-        with mpl.rc_context(STYLE):
-            return draw(*arguments, **options)
-
-    return drawn
+    figure.savefig(path, metadata={"Date": None})
 
 
 def _legend(figure: Figure, columns: int = 2, **options) -> None:
@@ -122,51 +111,52 @@ def _label(
 # Designs --------------------------------------------------------------------------------------------------------------
 
 
-def _value(one: Candidate, name: str) -> float:
-    value = getattr(one, name)
-    return max(value, LEAST_MEAN) if name == "error" else value
-
-
 @styled
-def designs(
-    every: Sequence[Candidate], across: str, up: str, frontier: Sequence[Candidate], labelled: Sequence[Candidate]
+def work_precision(
+    rounded: Sequence[Candidate], exact: Sequence[Candidate], cost: str, frontier: Sequence[Candidate]
 ) -> Figure:
-    """Plot all designs by two of `pixel_ns`, `cells` and `error`: filled if simulated and counted, small with culling.
+    """Plot error against a cost, a key of `WORDS`: designs that round above, a line per design without error below.
+
+    Hollow marks are at the clock that a monitor requires, filled ones at a routed clock or for costs without a clock;
+    grey dots are estimates; bars span the runs of a simulation.
 
     Args:
-        every: all designs.
-        across: attribute along x.
-        up: attribute along y.
-        frontier: designs for a line, ordered along x.
-        labelled: designs with a label.
+        rounded: designs that round.
+        exact: designs without error.
+        cost: attribute along x.
+        frontier: designs for a line and with labels, ordered along x; all have labels if it is empty.
     """
-    figure, [[axes]] = new_figure(4.2)
-    axes.set(xscale="log", yscale="log", xlabel=WORDS[across], ylabel=WORDS[up])
-
-    def places(some: Sequence[Candidate]) -> tuple[list[float], list[float]]:
-        return [_value(one, across) for one in some], [_value(one, up) for one in some]
-
-    for name, engine in ENGINES.items():
-        for found in (False, True):
-            dots = [one for one in every if one.config.engine == name and one.is_found == found]
-            if dots:
-                axes.scatter(
-                    *places(dots), marker=engine.marker, s=[10 if one.config.culling else 22 for one in dots],
-                    facecolors=engine.colour if found else "none", edgecolors=engine.colour, linewidths=0.8, zorder=3,
-                    alpha=1 if found else 0.45, label=name if found else f"{name}, estimated",
-                )  # fmt: skip
-    axes.step(*places(frontier), where="post", color=frontier[0].config.facts.colour, linewidth=0.9, alpha=0.7)
-    if up == "error":
-        _percent(axes, LEAST_MEAN)
-    else:
-        _ticks(axes.yaxis)
-    _ticks(axes.xaxis)
-    axes.margins(0.12)
-    _legend(figure, 3, handletextpad=0.2, columnspacing=1)
-    labels = [one.config.facts.label(one.config) for one in labelled]
-    _label(
-        axes, zip(*places(labelled), labels, strict=True), *places(every), expand=(1.15, 1.3), force_text=(0.3, 0.6)
-    )  # fmt: skip
+    below = 0.16 * len(exact)
+    figure, [[upper], [lower]] = new_figure(3.4 + below, 2, 1, sharex=True, height_ratios=(3, below))
+    for axes, every in ((upper, rounded), (lower, exact)):
+        ups = [one.error for one in every] if axes is upper else range(len(every))
+        for one, up in zip(every, ups, strict=True):
+            engine, across = one.config.facts, getattr(one, cost)
+            if one.is_found:
+                face = "white" if cost in CLOCKED and not one.is_routed else engine.colour
+                axes.plot(across, up, engine.marker, mfc=face, mec=engine.colour, ms=5, mew=0.8)
+                if cost == "simulated_s":
+                    axes.hlines(up, min(one.seconds), max(one.seconds), engine.colour)
+            elif cost != "simulated_s":
+                axes.plot(across, up, ".", color=GREY, ms=3, alpha=0.6)
+    upper.set(xscale="log", yscale="log", ylabel=WORDS["error"])
+    upper.margins(0.12)
+    _ticks(upper.yaxis, lambda share: f"{100 * share:g}%")
+    _ticks(lower.xaxis, "{:,.0f}".format if cost == "cells" else "{:g}".format)
+    lower.set(xlabel=WORDS[cost], ylabel="no error", ylim=(len(exact) - 0.4, -0.6))
+    names = [f"{one.config.engine} {one.config.facts.label(one.config)}" for one in exact]
+    lower.set_yticks(range(len(exact)), names, fontsize=LABEL_POINTS)
+    if frontier:
+        line = [getattr(one, cost) for one in frontier], [one.error for one in frontier]
+        upper.step(*line, where="post", color=frontier[0].config.facts.colour, linewidth=0.9, alpha=0.7)
+    shown = [one for one in rounded if one.is_found or cost != "simulated_s"]
+    xs, ys = [getattr(one, cost) for one in shown], [one.error for one in shown]
+    labels = [
+        (x, y, one.config.facts.label(one.config))
+        for x, y, one in zip(xs, ys, shown, strict=True)
+        if one in frontier or not frontier
+    ]
+    _label(upper, labels, xs, ys, expand=(1.15, 1.3), force_text=(0.3, 0.6))
     return figure
 
 
@@ -195,94 +185,16 @@ def shares(by: Mapping[Rounding, Mapping[int, Sequence[float]]]) -> Figure:
 
 
 @styled
-def likeness(of: Mapping[str, Mapping[str, Mapping[int, Sequence[float]]]]) -> Figure:
-    """Plot median and range of each measure, by rounding and fraction bits; values may be missing."""
-    figure, panels = new_figure(2.2 * len(of), len(of), 1, sharex=True)
-    for [axes], (measure, by) in zip(panels, of.items(), strict=True):
-        for rounding, colour in COLOURS.items():
-            found = {f: values for f, values in by[rounding].items() if len(values)}
-            low, middle, high = ([part(values) for values in found.values()] for part in (np.min, np.median, np.max))
-            axes.fill_between(list(found), low, high, color=colour, alpha=0.15, linewidth=0)
-            label = rounding if axes is panels[0, 0] else None
-            axes.plot(list(found), middle, marker="o", markersize=4, color=colour, label=label)
-        axes.set(ylabel=measure, xticks=list(by["truncate"]))
-    axes.set_xlabel("fraction bits F")
-    _legend(figure)
-    return figure
-
-
-@styled
-def by_depth(
-    by: Mapping[str, Mapping[str, Sequence[float]]],
-    lines: Mapping[str, Mapping[str, str]],
-    height: float,
-    across: str,
-    up: str,
-) -> Figure:
-    """Plot errors by depth of reflection: a panel per case, with lines in these styles."""
-    columns = 2
-    figure, panels = new_figure(height, -(-len(by) // columns), columns, sharex=True, sharey=height < WIDTH)
-    for axes, (name, of) in zip(panels.flat, by.items(), strict=False):
+def by_depth(by: Mapping[str, Mapping[str, Sequence[float]]], lines: Mapping[str, Mapping[str, str]]) -> Figure:
+    """Plot errors of hit points by reflections so far: a panel per rounding, with lines in these styles."""
+    figure, [panels] = new_figure(3.4, 1, len(by), sharey=True)
+    for axes, (name, of) in zip(panels, by.items(), strict=True):
         for kind, style in lines.items():
-            label = kind if axes is panels[0, 0] else None
+            label = kind if axes is panels[0] else None
             axes.plot([max(value, 1e-3) for value in of[kind]], markersize=4, label=label, **style)
-        axes.set(title=name, yscale="log", xticks=range(0, len(of[kind]), 1 + len(of[kind]) // 8))
-    for axes in panels.flat[len(by) :]:
-        axes.set_visible(False)
-    for axes in panels[-1]:
-        axes.set_xlabel(across)
-    for axes in panels[:, 0]:
-        axes.set_ylabel(up)
-    _legend(figure, 2 if len(lines) % 2 == 0 else 3)
-    return figure
-
-
-@styled
-def falling(shares: Mapping[str, Mapping[int, float]], hits: Mapping[str, Mapping[int, float]]) -> Figure:
-    """Plot the mean share of wrong pixels and the mean error of primary hit points, by rounding and fraction bits."""
-    figure, [panels] = new_figure(3.0, 1, 2)
-    forms = (
-        (WORDS["error"], shares, lambda share: f"{100 * share:g}%"),
-        ("mean hit error, world units", hits, "{:g}".format),
-    )
-    for axes, (title, of, form) in zip(panels, forms, strict=True):
-        for rounding, colour in COLOURS.items():
-            label = rounding if axes is panels[0] else None
-            axes.plot(*zip(*of[rounding].items(), strict=True), "o-", markersize=4, color=colour, label=label)
-        axes.set(yscale="log", xlabel="F", xticks=list(of["truncate"]), title=title)
-        _ticks(axes.yaxis, form)
+        axes.set(title=name, yscale="log", xticks=range(len(of[kind])), xlabel="reflections so far")
+    panels[0].set_ylabel("hit point error, world units")
     _legend(figure)
-    return figure
-
-
-@styled
-def by_reflections(by: Mapping[str, Mapping[int, Sequence[float]]]) -> Figure:
-    """Plot each packaged scene's share of wrong pixels and the mean of all, by rounding and reflections."""
-    figure, [[axes]] = new_figure(3.0)
-    for side, (rounding, of) in zip((-0.06, 0.06), by.items(), strict=True):
-        for place, values in of.items():
-            drawn = [max(value, LEAST_SHARE) for value in values]
-            axes.plot([place + side] * len(drawn), drawn, "o", color=COLOURS[rounding], markersize=3, alpha=0.5)
-        means = [np.mean(values) for values in of.values()]
-        axes.plot(list(of), means, color=COLOURS[rounding], label=f"{rounding}, mean")
-    axes.set(xlabel="reflections", ylabel="wrong pixels per scene", xticks=list(of))
-    _percent(axes, LEAST_SHARE)
-    _legend(figure)
-    return figure
-
-
-@styled
-def heat(by: Mapping[str, np.ndarray]) -> Figure:
-    """Plot the share of wrong pixels in each block of the picture over all worlds, by rounding."""
-    figure, panels = new_figure(2.9 * len(by), len(by), 1)
-    most = max(float(shares.max()) for shares in by.values())
-    for [axes], (rounding, blocks) in zip(panels, by.items(), strict=True):
-        image = axes.imshow(
-            100 * blocks, cmap="cividis", vmin=0, vmax=100 * most, extent=(0, 320, 240, 0), interpolation="nearest"
-        )
-        axes.set(title=rounding, xticks=(0, 160, 320), yticks=(0, 120, 240))
-        axes.grid(visible=False)
-    figure.colorbar(image, ax=panels, label="wrong pixels, %", shrink=0.7)
     return figure
 
 
@@ -302,40 +214,16 @@ def pictures(rows: Sequence[Sequence[tuple[str, np.ndarray]]], height: float) ->
     return figure
 
 
-def _drawn(point: Point) -> tuple[np.ndarray, np.ndarray]:
-    """Return the seed engine's picture and the exact one."""
-    models = SeedModel(point.config.fraction_bits, point.config.rounding), ExactModel()
-    rounded, perfect = (
-        model.render(point.scene, SCREENS["vga", 240], point.config.reflections) for model in models
-    )  # fmt: skip
-    return rounded, perfect
-
-
 def wrong_by_scene(points: Sequence[Point]) -> Figure:
-    """Show the wrong pixels of each point."""
+    """Show the wrong pixels of each point, a picture of the seed engine, three in a row."""
     shown = []
     for point in points:
-        rounded, perfect = _drawn(point)
-        share = count_wrong(rounded, perfect) / perfect[..., 0].size
-        shown.append((f"{name_of(point.what)}: {share:.2%}", diff_picture(rounded, perfect)))
-    columns = 3
-    return pictures([shown[at : at + columns] for at in range(0, len(shown), columns)], 1.35)
-
-
-def flips(points: Sequence[Point]) -> Figure:
-    """Show each point's picture, the exact picture and their difference."""
-    rows = []
-    for point in points:
-        rounded, perfect = _drawn(point)
-        name = fill(name_of(point.what).replace("_", " "), 18)  # no wider than the picture
-        rows.append(
-            [
-                (f"{name}\nF = {point.config.fraction_bits}, {point.config.rounding}", rounded),
-                ("exact", perfect),
-                (f"{count_wrong(rounded, perfect):,} wrong", diff_picture(rounded, perfect)),
-            ]
-        )
-    return pictures(rows, 1.45)
+        models = SeedModel(point.config.fraction_bits, point.config.rounding), ExactModel()
+        drawn, right = (one.render(point.scene, SCREENS["vga", 240], point.config.reflections) for one in models)
+        share = count_wrong(drawn, right) / right[..., 0].size
+        name = fill(name_of(point.what).replace("_", " "), 20)  # no wider than the picture
+        shown.append((f"{name}: {share:.2%}", diff_picture(drawn, right)))
+    return pictures([shown[at : at + 3] for at in range(0, len(shown), 3)], 1.45)
 
 
 # Stability and omissions ----------------------------------------------------------------------------------------------
@@ -349,11 +237,53 @@ def stiffness(cases: Mapping[str, tuple[float, float, float]], labelled: Sequenc
     axes.vlines(conditions, errors, bounds, color=GREY, linewidth=0.5, alpha=0.6)
     axes.scatter(conditions, bounds, marker="_", color=GREY, s=30, label="greatest bound")
     axes.scatter(conditions, errors, marker="o", color=BLUE, s=14, label="worst error", zorder=3)
-    axes.set(xscale="log", yscale="log", xlabel="condition number, world units per pixel", ylabel="world units")
+    axes.set(xscale="log", yscale="log", xlabel="relative condition number", ylabel="world units")
     axes.margins(0.2, 0.1)
     _legend(figure)
     labels = [(*cases[name][:2], name) for name in labelled]
     _label(axes, labels, conditions, errors, expand=(1.3, 1.8), force_text=(0.6, 1.2))
+    return figure
+
+
+@styled
+def by_arithmetic(titles: Mapping[str, str], panels: Sequence[tuple[str, Mapping[str, Mapping[str, float]]]]) -> Figure:
+    """Plot values by arithmetic.
+
+    Args:
+        titles: titles of the arithmetics, by name.
+        panels: for each panel, its title, and values by series and arithmetic: shares, or numbers of cells.
+    """
+    figure, [columns] = new_figure(3.3, 1, len(panels), sharey=True)
+    for axes, (title, series) in zip(columns, panels, strict=True):
+        for (colour, mark), (label, values) in zip(MARKS.items(), series.items(), strict=False):
+            places, shown = (
+                [[*titles].index(name) for name in values],
+                [max(one, LEAST_RAYS) for one in values.values()],
+            )
+            axes.plot(shown, places, mark, color=colour, label=label, ms=4.5, alpha=0.8)
+        axes.set_xlabel(title)
+        if max(shown) <= 1:
+            axes.set(xscale="log", xlim=(LEAST_RAYS / 2, 1))
+            axes.set_xticks([LEAST_RAYS, 1e-4, 1e-2, 1], ["0", "0.01%", "1%", ""])
+            axes.xaxis.set_minor_locator(NullLocator())
+        else:
+            axes.set_xlim(0, None)
+        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), frameon=False, handletextpad=0.1, labelspacing=0.2)
+    columns[0].set_yticks(range(len(titles)), titles.values())
+    columns[0].invert_yaxis()
+    return figure
+
+
+@styled
+def rule(by: Mapping[str, Sequence[tuple[float, float]]]) -> Figure:
+    """Plot relative forward errors against what condition and backward error allow, by arithmetic, and the limit."""
+    figure, [[axes]] = new_figure(3.6)
+    for (colour, mark), (name, places) in zip(MARKS.items(), by.items(), strict=True):
+        axes.plot(*zip(*places, strict=True), mark, color=colour, label=name, ms=3.5, alpha=0.7)
+    ends = [end(one for places in by.values() for place in places for one in place) for end in (min, max)]
+    axes.plot(ends, ends, color="black", linewidth=0.8)
+    axes.set(xscale="log", yscale="log", xlabel="condition number x backward error", ylabel="forward error")
+    _legend(figure, 4, handletextpad=0.1)
     return figure
 
 
@@ -373,26 +303,8 @@ def waterfall(title: str, steps: Sequence[tuple[str, int]]) -> Figure:
     axes.bar_label(drawn, words, padding=3, fontsize=LABEL_POINTS)
     axes.set_yticks(range(len(bars)), names)
     axes.invert_yaxis()
-    axes.set(xlabel="LUT4", title=title, xlim=(0, 1.25 * max(ends)))
+    axes.set(xlabel="LUT4", title=title, xlim=(0, 1.35 * max(ends)))
     axes.xaxis.set_major_formatter("{x:,.0f}")
     axes.xaxis.set_major_locator(MaxNLocator(4))
     axes.grid(visible=False, axis="y")
-    return figure
-
-
-@styled
-def culling(by: Mapping[str, Mapping[str, float]]) -> Figure:
-    """Plot the cycles per frame with culling, relative to those without: one bar per engine and scene it can draw."""
-    scenes = sorted({name for of_engine in by.values() for name in of_engine}, reverse=True)
-    figure, [[axes]] = new_figure(1.0 + 0.34 * len(scenes))
-    height = 0.8 / len(by)
-    for place, (engine, of_engine) in enumerate(by.items()):
-        offsets = [scenes.index(name) + 0.4 - (place + 0.5) * height for name in of_engine]
-        shares = [100 * share for share in of_engine.values()]
-        bars = axes.barh(offsets, shares, height, label=engine, color=ENGINES[engine].colour)
-        axes.bar_label(bars, fmt="%.0f", padding=3, fontsize=LABEL_POINTS)
-    axes.axvline(100, color="black", linewidth=1)
-    axes.set(xlabel="cycles per frame with culling, % of those without", xlim=(0, 118))
-    axes.set_yticks(range(len(scenes)), scenes)
-    _legend(figure)
     return figure

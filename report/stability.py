@@ -3,21 +3,17 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from typing import Any
 
-from raycaster.configuration import configure
+from raycaster.configuration import Configuration
 from raycaster.golden.catalogue import catalogue
-from raycaster.golden.errors import compare
-from raycaster.golden.rays import primary_slopes
-from raycaster.golden.world import Rectangles
 from raycaster.report import plots
+from raycaster.report.arithmetics import Results, case_measures
 from raycaster.report.errors import ROUNDINGS
 from raycaster.report.extent import CASE_REFLECTIONS, Extent
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
-from raycaster.report.points import CASE, Point, name_of, picture, scene_of
+from raycaster.report.points import CASE, Point, name_of, picture
 from raycaster.report.sweep import Sweep
 
 OF_SEED = ("materials", "patterns")
@@ -26,22 +22,8 @@ OF_SEED = ("materials", "patterns")
 SHARE = 12
 """Number of cases per simulation."""
 
-BOUNCES = 8
-GROWING = ("facing_y_40", "facing_z", "box_20", "box_off_centre", "corner_reflector", "box_in_box")
-"""Cases whose error is computed over all bounces."""
-
-GROWTH = {
-    "bound": {"color": plots.GREY, "linestyle": "--"},
-    "worst": {"color": plots.VERMILION, "marker": "o"},
-    "mean": {"color": plots.BLUE, "marker": "o"},
-}
-"""Errors of `raycaster.golden.errors.DepthErrors` that are plotted over all bounces, and their lines."""
-
-FLIPPED = 10
-"""Number of cases whose pictures are shown."""
-
-LABELLED = 6
-"""Number of labelled cases in the plot: half are the stiffest, half have the greatest error."""
+FLIPPED, LABELLED = 12, 6
+"""Number of cases whose pictures are shown; of labelled cases, half of them stiff and half with a great error."""
 
 LEAST = 0.1
 """Lower limit for drawing errors, in world units; smaller errors are drawn at this value."""
@@ -49,72 +31,50 @@ LEAST = 0.1
 COLUMNS = (
     "case", "engine", "condition", "wrong pixels", "rays flipped", "worst error", "bound", "error / bound", "verdict",
 )  # fmt: skip
-SEEN_COLUMNS = (
-    "case", "design", "hit points unlike the model", "worst error", "bound", "over the bound", "command",
-)  # fmt: skip
-
-Results = Mapping[Point, Mapping[str, Any]]
-Conditions = Mapping[str, float | None]
 
 
 def stability_chapter(what: Extent, sweep: Sweep) -> tuple[Chapter, dict[str, int]]:
     """Return the chapter and the figures to keep."""
-    of_seed = [case for case in what.cases if not case.scene.lacks(OF_SEED)]
-    pictures = sweep(
+    found = sweep(
         "catalogue",
         [
             picture(f"{CASE}{case.name}", f, rounding, CASE_REFLECTIONS, what.case_screen)
-            for case in of_seed for f in what.case_fractions for rounding in ROUNDINGS
+            for case in what.cases if not case.scene.lacks(OF_SEED)
+            for f in what.case_fractions for rounding in ROUNDINGS
         ],
     )  # fmt: skip
-    config = configure(reflections=CASE_REFLECTIONS, screen=what.case_screen, allow_underrun=True)
-    asked = [Point("condition", f"{CASE}{case.name}", config) for case in what.cases]
-    conditions = {name_of(point.what): found["worst"] for point, found in sweep("conditions", asked).items()}
+    pictures = {point: {**result, **_extremes(result["depths"])} for point, result in found.items()}
+    conditions = {name_of(one.what): of["condition"] for one, of in sweep("measures", case_measures(what)).items()}
     probed = [Point("hits", f"{CASE}{case.name}", config) for config in what.probed for case in what.probed_cases]
-    hits = sweep("hit points", probed)
+    hits = {one: {**of, **_extremes(of["depths"])} for one, of in sweep("hit points", probed).items()}
     shown = sweep("cases", [point for config in what.shown for point in _shares(config)])
-
-    measured = {point: {**result, **_extremes(result["depths"])} for point, result in pictures.items()}
-    found = {point: {**result, **_extremes(result["depths"])} for point, result in hits.items()}
+    columns = "case", "design", "hit points unlike the model", "worst error", "bound", "over the bound", "command"
     seen = [
         [name_of(one.what), one.config.name, *(of[n] for n in ("different", "worst", "bound", "exceeded")), one.command]
-        for one, of in found.items()
+        for one, of in hits.items()
     ]
-    said, alarms, summary = _judged(measured, shown, found, conditions)
-    strains = {case.name: case.strain for case in what.cases}
-    rows = _rows(measured, shown, conditions)
-    data = Data(
-        "catalogue",
-        (*COLUMNS, "strains", "command"),
-        [[*row, strains[row[0]], point.command] for point, row in rows],
-    )
-    first = what.case_fractions[0]
+    said, alarms, summary = _judged(pictures, shown, hits, conditions)
+    strains, first = {case.name: case.strain for case in what.cases}, what.case_fractions[0]
+    rows = _rows(pictures, shown, conditions)
+    every = [[*row, strains[row[0]], point.command] for point, row in rows]
     of_page = [row for point, row in rows if point.kind == "cases" or point.config.fraction_bits == first]
     text = (
         "These scenes strain fixed-point arithmetic: grazed planes, corners, slits, points, facing mirrors, turned "
-        "cameras, and patterns hit on the borders of their cells. The condition number of a case is the distance, in "
-        "world units, by which a hit moves if its ray is off by one pixel: the maximum over all rays and reflections. "
-        "The exact and beam engines do not round, so they have no error in any case. The seed engine's camera cannot "
-        "turn."
+        "cameras, and patterns hit on the borders of their cells. The relative condition number of a hit is the "
+        "relative change of the hit point per relative change of the slope, for small changes: one over the cosine of "
+        "the angle of incidence, in mirrors too. A case's condition is the maximum over all hits. The exact and beam "
+        "engines are exact: they never round. The seed engine's camera cannot turn. Hit points were read from the "
+        f"simulated ray units of {len(what.probed)} designs, with {len(what.probed_cases)} cases: hit_points.csv."
     )
-    drawn = [_stiffness(measured, conditions, first), _growth(), _flips(measured)]
-    sections = [
-        Section("Stiff and extreme cases", text, said, drawn, [Table(data, COLUMNS, of_page)]),
-        Section(
-            "Hit points in the converted Verilog",
-            f"Read from the simulated ray units, for {len(what.probed_cases)} cases and {len(what.probed)} designs.",
-            tables=[Table.of(Data("hit_points", SEEN_COLUMNS, seen), hidden=1)],
-        ),
-    ]
-    kept = {
-        "stiff_cases": len(what.probed_cases),
-        "unlike_golden": sum(one["different"] for one in found.values()),
-        "over_bound": sum(one["exceeded"] for one in found.values()),
-    }
-    return Chapter(sections, alarms, [summary]), kept
+    drawn = [_stiffness(pictures, conditions, first), _flips(pictures)]
+    table = Table(Data("catalogue", (*COLUMNS, "strains", "command"), every), COLUMNS, of_page)
+    section = Section("Stiff and extreme cases", text, said, drawn, [table], [Data("hit_points", columns, seen)])
+    different, over = (sum(one[name] for one in hits.values()) for name in ("different", "exceeded"))
+    kept = {"stiff_cases": len(what.probed_cases), "unlike_golden": different, "over_bound": over}
+    return Chapter([section], alarms, [summary]), kept
 
 
-def _shares(config) -> list[Point]:
+def _shares(config: Configuration) -> list[Point]:
     """Return the points that simulate every case that a design can show."""
     count = len(catalogue(config.looks))
     return [Point("cases", f"{first}+{min(SHARE, count - first)}", config) for first in range(0, count, SHARE)]
@@ -126,12 +86,11 @@ def _extremes(depths: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return extremes | {name: sum(depth[name] for depth in depths) for name in ("flips", "exceeded")}
 
 
-def _rows(pictures: Results, shown: Results, conditions: Conditions) -> list[tuple[Point, list]]:
+def _rows(pictures: Results, shown: Results, conditions: Mapping[str, float | None]) -> list[tuple[Point, list]]:
     """Return a row per case and engine, each with its point."""
     rows = []
     for point, one in pictures.items():
-        name = name_of(point.what)
-        engine = f"seed F = {point.config.fraction_bits} {point.config.rounding}"
+        name, engine = name_of(point.what), f"seed F = {point.config.fraction_bits} {point.config.rounding}"
         counts = [one[key] for key in ("wrong", "flips", "worst", "bound", "tightest")]
         rows.append((point, [name, engine, conditions[name], *counts, "EXCEEDED" if one["exceeded"] else "holds"]))
     for point, cases in shown.items():
@@ -143,52 +102,34 @@ def _rows(pictures: Results, shown: Results, conditions: Conditions) -> list[tup
 
 
 def _judged(
-    pictures: Results, shown: Results, hits: Results, conditions: Conditions
+    pictures: Results, shown: Results, hits: Results, conditions: Mapping[str, float | None]
 ) -> tuple[list[str], list[str], str]:
     """Return the sentences, the alarms and the summary."""
 
     def words(point: Point) -> str:
-        return f"F = {point.config.fraction_bits}, {point.config.rounding}"
+        return f"{name_of(point.what)}, F = {point.config.fraction_bits}, {point.config.rounding}"
 
     over = [point for point, result in pictures.items() if result["exceeded"]]
-    tightest = max(pictures, key=lambda point: pictures[point]["tightest"])
+    tightest, most = (max(pictures, key=lambda point: pictures[point][key]) for key in ("tightest", "wrong"))
     part = pictures[tightest]["tightest"]
     different, over_seen = (sum(one[name] for one in hits.values()) for name in ("different", "exceeded"))
-    wrong = sum(case["wrong"] for one in shown.values() for case in one.values())
-    stiffest = max((name for name in conditions if conditions[name]), key=lambda name: conditions[name] or 0)
-    alarms = [f"A bound is exceeded: {name_of(one.what)}, {words(one)}. {one.command}" for one in over]
-    if over_seen or different:
-        alarms.append(
-            f"In simulation, {different} hit points differ from the golden model, and {over_seen} coordinates exceed "
-            "their bound."
-        )
-    if wrong:
-        alarms.append(f"In simulation, {wrong} pixels of the catalogue's cases differ from the golden model.")
+    drawn = [case for one in shown.values() for case in one.values()]
+    wrong = sum(case["wrong"] for case in drawn)
+    stiffest = max(conditions, key=lambda name: conditions[name] or 0)
+    alarms = [f"A bound is exceeded: {words(one)}. {one.command}" for one in over]
+    hardware = (
+        f"In simulation, {different} hit points of {len(hits)} frames differ from the golden model, {over_seen} "
+        f"coordinates exceed their bound, and {wrong} pixels of {len(drawn)} cases differ from exact arithmetic."
+    )
+    alarms += [hardware] if different or over_seen or wrong else []
     said = [
-        f"The stiffest of {len(conditions)} cases is {stiffest}: hits move by up to {conditions[stiffest]:,.0f} world "
-        "units per pixel of error in the ray.",
+        f"The stiffest of {len(conditions)} cases is {stiffest}: a hit moves by up to {conditions[stiffest]:,.0f} "
+        "times the relative error of its ray.",
         f"{len(over)} of the seed engine's {len(pictures)} pictures, for {len({one.what for one in pictures})} cases, "
-        f"have a coordinate over its bound. The closest to its bound is in {name_of(tightest.what)} "
-        f"({words(tightest)}), with {part:.2%} of it.",
+        f"have a coordinate over its bound. The closest to its bound ({words(tightest)}) has {part:.2%} of it. The "
+        f"most wrong pixels ({words(most)}) are {pictures[most]['wrong']:,} of {pictures[most]['pixels']:,}.",
+        hardware,
     ]
-    for rounding in ROUNDINGS:
-        of_rounding = {point: one for point, one in pictures.items() if point.config.rounding == rounding}
-        most, result = max(of_rounding.items(), key=lambda item: item[1]["wrong"])
-        said.append(
-            f"The most wrong pixels are in {name_of(most.what)} with F = {most.config.fraction_bits} (rounding: "
-            f"{rounding}): {result['wrong']:,} of {result['pixels']:,}."
-        )
-    if hits:
-        said.append(
-            f"In the seed engine's converted Verilog, {different} hit points of {len(hits)} frames differ from "
-            f"the golden model, and {over_seen} coordinates exceed their bound."
-        )
-    if shown:
-        counts: Counter[str] = Counter()
-        for point, cases in shown.items():
-            counts[point.config.engine] += len(cases)
-        engines = ", ".join(f"{engine} engine {count}" for engine, count in counts.items())
-        said.append(f"Cases drawn in simulation: {engines}; {wrong} pixels differ from exact arithmetic.")
     summary = (
         f"In {len(conditions)} stiff and extreme cases, {len(over)} bounds are exceeded, errors reach at most "
         f"{part:.1%} of their bound, and the engines without rounding "
@@ -197,50 +138,28 @@ def _judged(
     return said, alarms, summary
 
 
-def _stiffness(pictures: Results, conditions: Conditions, first: int) -> Plot:
+def _stiffness(pictures: Results, conditions: Mapping[str, float | None], first: int) -> Plot:
     stiff = {}
     for point, one in pictures.items():
         name = name_of(point.what)
         if (point.config.fraction_bits, point.config.rounding) == (first, "truncate") and conditions[name]:
             stiff[name] = conditions[name], max(one["worst"], LEAST), max(one["bound"], LEAST)
     labelled = [name for place in (0, 1) for name in sorted(stiff, key=lambda one: -stiff[one][place])[: LABELLED // 2]]
-    return Plot(
-        "stiffness",
+    caption = (
         f"Condition number, worst error and greatest bound of each case, with F = {first}, truncated. Errors below "
-        f"{LEAST:g} are drawn at this value.",
-        plots.stiffness(stiff, list(dict.fromkeys(labelled))),
-        Data("stiffness", ("case", "condition", "worst error", "bound"), [[n, *values] for n, values in stiff.items()]),
+        f"{LEAST:g} are drawn at this value."
     )
-
-
-def _growth() -> Plot:
-    slopes = primary_slopes(configure(screen="tiny", allow_underrun=True).screen_geometry).reshape(-1, 3)
-    lines, rows = {}, []
-    for name in GROWING:
-        scene = scene_of(f"{CASE}{name}")
-        depths = compare(Rectangles.of_scene(scene), scene.camera.position, slopes, BOUNCES, 0, "truncate")
-        lines[name] = {kind: [asdict(depth)[kind] for depth in depths] for kind in GROWTH}
-        rows += [[name, bounces, one.mean, one.worst, one.bound] for bounces, one in enumerate(depths)]
-    return Plot(
-        "growth",
-        f"Errors and bounds over {BOUNCES} bounces in the golden model, with F = 0, truncated.",
-        plots.by_depth(lines, GROWTH, 5.6, "bounces", "world units"),
-        Data("growth", ("case", "bounces", "mean", "worst", "bound"), rows),
-    )
+    rows = [[name, *values] for name, values in stiff.items()]
+    data = Data("stiffness", ("case", "condition", "worst error", "bound"), rows)
+    return Plot("stiffness", caption, plots.stiffness(stiff, list(dict.fromkeys(labelled))), data)
 
 
 def _flips(pictures: Results) -> Plot:
-    by_case: dict[str, Point] = {}
+    worst: dict[str, Point] = {}
     for point in sorted(pictures, key=lambda point: -pictures[point]["wrong"]):
-        by_case.setdefault(point.what, point)
-    flipped = list(by_case.values())[:FLIPPED]
-    rows = [
-        [name_of(one.what), one.config.fraction_bits, one.config.rounding, pictures[one]["wrong"], one.command]
-        for one in flipped
-    ]
-    return Plot(
-        "flips",
-        "The cases with the most wrong pixels: the seed engine's picture, the exact picture and their difference.",
-        plots.flips(flipped),
-        Data("flips", ("case", "F", "rounding", "wrong", "command"), rows),
+        worst.setdefault(point.what, point)
+    shown = list(worst.values())[:FLIPPED]
+    data = Data(
+        "flips", ("case", "wrong", "command"), [[name_of(p.what), pictures[p]["wrong"], p.command] for p in shown]
     )
+    return Plot("flips", "The cases with the most wrong pixels, in pink.", plots.wrong_by_scene(shown), data)

@@ -8,12 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-RESAMPLED = 2000
-"""Number of bootstrap samples, drawn from the worlds with replacement."""
-
-RESAMPLING_SEED = 1
-LEVEL = 95
-"""Confidence level of intervals, in per cent."""
+RESAMPLED, RESAMPLING_SEED, LEVEL = 2000, 1, 95
+"""Number of bootstrap samples, drawn from the worlds with replacement; their seed; confidence level, in per cent."""
 
 
 @dataclass(frozen=True)
@@ -48,13 +44,8 @@ def slope(
 ) -> Slope:
     """Fit a line to the means over all worlds by least squares; its interval comes from a bootstrap over worlds.
 
-    Rays of one world are correlated, so worlds are resampled, not rays.
-
-    Args:
-        places: x coordinate of each column.
-        sums: sums of the averaged values, float (worlds, places).
-        counts: numbers of averaged values, (worlds, places); None if all are 1.
-        binary: fit the means' logarithms to base 2.
+    Rays of one world are correlated, so worlds are resampled, not rays. The means at `places` are those of values with
+    these sums and counts, (worlds, places); all counts are 1 by default. If binary, logarithms to base 2 are fitted.
 
     Raises:
         ValueError: a place has no values to average, or a mean is 0 although its logarithm is needed.

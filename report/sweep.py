@@ -1,27 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""Sweep over points: an executor computes them, and each result is stored at once, so nothing is computed twice."""
+"""Sweep over points: an executor computes them, and each result is kept at once, so nothing is computed twice."""
 
 from __future__ import annotations
 
-import json
-import os
-import re
-import tempfile
+import resource
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
-from operator import attrgetter, methodcaller
+from dataclasses import dataclass, field
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
-from raycaster.jobs import run_jobs
+from raycaster.jobs import Kept, run_jobs
 from raycaster.output import Console
 from raycaster.report.points import Point
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """Computes points, except those whose results are stored.
+    """Computes points, except those whose results are kept.
 
     Attributes:
         directory: directory of results, one atomically written file per point.
@@ -32,47 +29,42 @@ class Sweep:
     directory: Path
     make_executor: Callable[[], Executor]
     console: Console
+    _seconds: dict[Point, float] = field(default_factory=dict)
 
     def __call__(self, what: str, points: Sequence[Point]) -> dict[Point, dict[str, Any]]:
-        """Return all results in the order of the points, computing only those that are not stored.
+        """Return all results in the order of the points, computing only those that are not kept.
 
         Args:
             what: name of the points on the progress bar.
-            points: points to compute; each new result is stored as soon as it is computed.
+            points: points to compute; each new result is kept as soon as it is computed.
 
         Raises:
             UserError: workers died repeatedly on the same points.
         """
-        results = {point: result for point in points if (result := self.find(point)) is not None}
+        points = list(dict.fromkeys(points))
+        label = attrgetter("arguments")
+        found = run_jobs(what, timed, points, self.make_executor, self.console, label=label, kept=Kept(self.place))
+        self._seconds.update((point, seconds) for point, (_, seconds) in zip(points, found, strict=True))
+        return {point: result for point, (result, _) in zip(points, found, strict=True)}
 
-        def keep(point: Point, result: dict[str, Any]) -> None:
-            self.keep(point, result)
-            results[point] = result
+    def place(self, point: Point) -> Path:
+        """Return the file of a point's result, whose name changes with everything that the result depends on."""
+        return self.directory / point.kind / point.fingerprint
 
-        missing = [point for point in dict.fromkeys(points) if point not in results]
-        run_jobs(
-            what, methodcaller("compute"), missing, self.make_executor, self.console, finished=keep,
-            before=len(results), label=attrgetter("arguments"),
-        )  # fmt: skip
-        return {point: results[point] for point in points}
+    def spent(self) -> dict[str, tuple[int, float]]:
+        """Return the number of points and the processor seconds that they took, kept results included, by kind."""
+        kinds: dict[str, list[float]] = {}
+        for point, seconds in self._seconds.items():
+            kinds.setdefault(point.kind, []).append(seconds)
+        return {kind: (len(seconds), sum(seconds)) for kind, seconds in kinds.items()}
 
-    def find(self, point: Point) -> dict[str, Any] | None:
-        """Return the stored result; None if there is none or something that it depends on has changed."""
-        try:
-            stored = json.loads(self._path(point).read_text())
-        except (OSError, ValueError):
-            return None
-        return stored["result"] if stored.get("fingerprint") == point.fingerprint else None
 
-    def keep(self, point: Point, result: dict[str, Any]) -> None:
-        """Store a result."""
-        stored = {"fingerprint": point.fingerprint, "command": point.command, "result": result}
-        self.directory.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=self.directory, prefix=".", suffix=".json")
-        with os.fdopen(handle, "w") as file:
-            json.dump(stored, file, indent=1)
-        Path(name).replace(self._path(point))
+def timed(point: Point) -> tuple[dict[str, Any], float]:
+    """Compute a point; return its result, and the seconds that this process and the programs it called computed."""
+    before = _computed()
+    return point.compute(), _computed() - before
 
-    def _path(self, point: Point) -> Path:
-        name = re.sub(r"[^\w.]+", "-", point.arguments)
-        return self.directory / f"{name}.json"
+
+def _computed() -> float:
+    used = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(one.ru_utime + one.ru_stime for one in used)

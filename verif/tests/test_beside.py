@@ -4,12 +4,9 @@
 from __future__ import annotations
 
 import pytest
-from rich.console import Console
 
-from raycaster.errors import UserError
-from raycaster.fpga.cells import Area
-from raycaster.report import beside
-from raycaster.report.beside import (
+from raycaster.docs import beside
+from raycaster.docs.beside import (
     Other,
     checkouts_of,
     measure_beside,
@@ -17,6 +14,9 @@ from raycaster.report.beside import (
     measure_ours,
     measure_software,
 )
+from raycaster.errors import UserError
+from raycaster.fpga.cells import Area
+from raycaster.output import Console
 from raycaster.scene import load_scene, packaged_scenes
 from raycaster.screens import SCREENS
 from raycaster.sim.simulator import MODELS_VARIABLE, SimulationError
@@ -65,8 +65,7 @@ def other(**changed) -> Other:
     defines = {"CLOCK": "clk", "RESET": "reset", "IN_RESET": "1", "SHOWN": "shown"}
     return Other(**{
         "title": "Stripes", "address": "https://example.org/stripes", "top": "stripes",
-        "sources": ("step.v", "stripes.v"), "data": (), "ours": (), "defines": defines, "clock_mhz": 25,
-        "draws": "stripes",
+        "sources": ("step.v", "stripes.v"), "defines": defines, "draws": "stripes",
     } | changed)  # fmt: skip
 
 
@@ -118,12 +117,13 @@ def test_a_design_that_fails_does_not_lose_the_others(tmp_path, monkeypatch, cap
     def ours(options, scene, directory):
         if options["engine"] in broken:
             raise SimulationError("its log is there")
-        return {"design": options["engine"], "pixels": 1, "frame_s": 1.0}
+        return software | {"design": options["engine"]}
 
-    broken, failures = ["beam"], []
-    monkeypatch.setattr(beside, "measure_software", lambda *_: [{"design": "software", "pixels": 1, "frame_s": 1.0}])
+    software = {"design": "software", "draws": "", "commit": "", "pixels": 1, "frame_s": 1.0}
+    broken = ["beam"]
+    monkeypatch.setattr(beside, "measure_software", lambda *_: [software])
     monkeypatch.setattr(beside, "measure_ours", ours)
-    rows = measure_beside("boxes", {}, tmp_path / "out", Console(), failures)
+    rows, failures = measure_beside("boxes", {}, tmp_path / "out", Console())
     assert [row["design"] for row in rows] == ["software", "exact"]
     assert failures == ["beam: its log is there"]
     assert "not measured: beam: its log is there\n" in capsys.readouterr().out

