@@ -111,11 +111,11 @@ def _declared(body: str) -> dict[str, str]:
     """Return the names of signals and constants that a property declares, with their types."""
     found: dict[str, str] = {}
     for statement in DECLARATION.findall(body):
-        kind, bare, brackets = TYPE.findall(statement)[0], statement, 1
+        kind, bare, brackets = str(TYPE.findall(statement)[0]), statement, 1
         while brackets:  # innermost brackets first
             bare, brackets = re.subn(r"\([^(){}[\]]*\)|\{[^(){}[\]]*\}|\[[^(){}[\]]*\]", " ", bare)
-        names = (re.findall(r"\w+", part.partition("=")[0])[-1] for part in bare.split(","))
-        found = dict.fromkeys(names, kind) | found
+        for part in bare.split(","):
+            found.setdefault(re.findall(r"\w+", part.partition("=")[0])[-1], kind)
     return found
 
 
