@@ -20,7 +20,7 @@ from raycaster.hdl.signals import bit, unsigned
 from raycaster.outcomes import table
 
 MODULE = """\
-from myhdl import Constant, Signal, always, always_comb, block, concat, instances, intbv
+from myhdl import Signal, always, always_comb, block, concat, instances, intbv
 
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, tied, unconnected, unsigned
@@ -138,13 +138,17 @@ REFUSALS = (
             _process("if a > b:\n    result.next = a\nelse:\n    result.next = b")),
     Refusal("return", _process("result.next = b\nif a == 0:\n    return  # refused\nresult.next = a"),
             _process("result.next = b\nif a != 0:\n    result.next = a")),
+    Refusal("choice", _process("result.next = (a if index[0] else b) == 3  # refused"),
+            _process("result.next = chosen == 3", "chosen = unsigned(4)\n"
+            "@always_comb\ndef choose():\n    chosen.next = a if index[0] else b\n")),
+    Refusal("rounded", _process("result.next = apart // 2  # refused", APART),
+            _process("result.next = apart[5:1]", APART)),
     Refusal("undriven", _process("result.next = a ^ nothing", "nothing = unsigned(4)  # refused\n"),
             _process("result.next = a ^ nothing", "nothing = tied(0, 4)\n")),
+    Refusal("two drivers", "one = add(a, b, result, unconnected(1))\ntwo = add(a, index, result, unconnected(1))\n",
+            "one = add(a, b, result, unconnected(1))\ntwo = add(a, index, unconnected(4), unconnected(1))\n"),
     Refusal("unread", "carry = bit()  # refused\nadding = add(a, b, result, carry)\n",
             "adding = add(a, b, result, unconnected(1))\n"),
-    Refusal("constant", _process("result.next = a ^ offset",
-                                 "offset = Constant(intbv(-3, min=-8, max=8))  # refused\n"),
-            _process("result.next = a ^ offset", "offset = tied(5, 4)\n")),
     Refusal("slices", _process("for i in range(2):\n    result.next[i] = halves[i][0]",
                                "halves = [a(2, 0), a(4, 2)]  # refused\n"),
             _process("for i in range(2):\n    result.next[i] = a[2 * i]\nresult.next[4:2] = 0")),
@@ -152,6 +156,9 @@ REFUSALS = (
             "@always(clk.posedge)\ndef take():\n    pair.word.next = a\n    pair_high.next = index\n"),
             _process("result.next = pair.high ^ other", f"{PAIR}other = unsigned(2)\n"
             "@always(clk.posedge)\ndef take():\n    pair.word.next = a\n    other.next = index\n")),
+    Refusal("keyword", _process("result.next = table", "table = unsigned(4)  # refused\n"
+            "@always_comb\ndef look_up():\n    table.next = a\n"),
+            _process("result.next = place", "place = unsigned(4)\n@always_comb\ndef look_up():\n    place.next = a\n")),
     Refusal("nameless", "one = add(a, b, unsigned(4), unconnected(1))\ntwo = add(a, b, result, unconnected(1))\n",
             "one = add(a, b, unconnected(4), unconnected(1))\ntwo = add(a, b, result, unconnected(1))\n"),
     Refusal("not in MyHDL", _process("result.next = a / b  # refused"), _process("result.next = a")),

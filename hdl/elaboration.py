@@ -12,7 +12,7 @@ from functools import cache
 from types import CodeType
 from typing import Any
 
-from raycaster.hdl.internals import Block, all_signals, util, waiter
+from raycaster.hdl.internals import SOURCE_READERS, Block, all_signals
 
 _ELABORATING = threading.RLock()
 """Lock for a single design at a time, as MyHDL elaborates, simulates and converts through globals."""
@@ -94,7 +94,6 @@ _REPLACED = (
     (inspect, "getouterframes", _callers),
     (inspect, "getsourcelines", _once(inspect.getsourcelines)),
     (inspect, "getsourcefile", _once(inspect.getsourcefile)),
-    (util, "_dedent", _dedent := cache(util._dedent)),
-    (waiter, "_dedent", _dedent),
+    *((module, name, cache(getattr(module, name))) for module, name in SOURCE_READERS),
 )
 """Functions that MyHDL calls, and their replacements."""
