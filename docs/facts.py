@@ -39,7 +39,7 @@ def seed_cycles() -> str:
         for bits in (1, 2, 3):
             config = configure(reflections=reflections, divider_bits=bits, allow_underrun=True)
             fits = "yes" if config.group_cycles <= config.group_budget else "no"
-            rows.append([reflections, bits, config.slot_cycles, config.group_cycles, config.group_budget, fits])
+            rows.append([reflections, bits, config.rect_cycles, config.group_cycles, config.group_budget, fits])
     return table(
         [
             "reflections",
@@ -185,7 +185,7 @@ def facts() -> dict[str, str]:
         "registers": registers(),
         "units": str(default.units),
         "rectangles": str(default.rectangles),
-        "slot": str(default.slot_cycles),
+        "rect_cycles": str(default.rect_cycles),
         "seed_latency": str(configure().pass_latency),
         "overhead": str(exact.Exact.GROUP_OVERHEAD),
         "verdict": str(exact.WRITE_AT + 1),

@@ -217,13 +217,13 @@ class Configuration:
         return -(-self.quotient_bits // self.divider_bits)
 
     @property
-    def slot_cycles(self) -> int:
+    def rect_cycles(self) -> int:
         """Cycles from one rectangle to the next; 0 for the beam engine, which tests all at once."""
-        return self.facts.slot_cycles(self)
+        return self.facts.rect_cycles(self)
 
     @property
     def pass_latency(self) -> int:
-        """Cycles from the end of a pass's last slot to the first cycle of the next pass."""
+        """Cycles from the end of a pass's last rectangle to the first cycle of the next pass."""
         return self.facts.pass_latency(self)
 
     @property

@@ -13,7 +13,7 @@ from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.common.interfaces import Steps
 
 EARLY_OUT_AT = 2
-"""Cycles from the start of a rectangle that no ray runs towards to its early out, the last cycle of its slot."""
+"""Cycles from the start of a rectangle that no ray runs towards to its early out, the last cycle of its test."""
 
 
 def sorted_rect(rectangles: Rectangles, index: int, prefix: str, config: Configuration | None = None) -> dict[str, int]:
@@ -75,14 +75,14 @@ def step_names(config: Configuration) -> list[str]:
     ]
 
 
-def slot_length(config: Configuration) -> int:
+def rect_cycles(config: Configuration) -> int:
     """Return the cycles from one rectangle to the next: one, or those for the 9 integer bits and the fraction bits."""
     return -(-(9 + config.fraction_bits) // config.divider_bits) if config.facts.divides else 1
 
 
 def ends_early(config: Configuration) -> bool:
-    """True if a rectangle that no ray runs towards has a slot long enough to be ended early."""
-    return bool(config.culling) and slot_length(config) > EARLY_OUT_AT + 1
+    """True if a rectangle that no ray runs towards has enough cycles to be ended early."""
+    return bool(config.culling) and rect_cycles(config) > EARLY_OUT_AT + 1
 
 
 def trace_cycles(
@@ -105,7 +105,7 @@ def trace_cycles(
         behind: (bounce, index) of the rectangles that no ray runs towards.
         lost: the bounce after which no ray is alive.
     """
-    division = slot_length(config)
+    division = rect_cycles(config)
     exact = not config.facts.divides
     offered_after = 3 if exact else division + 4
     idle = {f"steps_{name}": 0 for name in step_names(config)}

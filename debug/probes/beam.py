@@ -278,7 +278,7 @@ class BeamProbes(Description):
             for turn in range(last)
         ]  # fmt: skip
         reflected = [
-            Probe("turned by", fields("{fold}", "fold", [f"turn_{axis}" for axis in AXES], fold), "ray", mirrored,
+            Probe("shifted by", fields("{fold}", "fold", [f"shift_{axis}" for axis in AXES], fold), "ray", mirrored,
                 signed=True, parts=AXES),
             Probe("runs back", fields("{fold}", "fold", [f"back_{axis}" for axis in AXES], fold), "ray", turned,
                 parts=AXES),

@@ -270,7 +270,7 @@ class UnitProbes(Description):
             Probe("ended before", (f"{combiner}.missed",), "blend", ended_before, shown=False),
             Probe("found", (kept_colour.rpartition(".")[0] + ".found",), "blend", found),
             Probe("its colour", (kept_colour,), "blend", golden_colour, colour=True),
-            Probe("colour seen", (f"{combiner}.seen_word",), "blend", seen_colour, colour=True),
+            Probe("colour seen", (f"{combiner}.ray_colour_word",), "blend", seen_colour, colour=True),
             Probe("means of the channels", channels, "done", pixel_channels, parts=COLOURS),
             Probe("pixel", (f"{combiner}.pixel_word",), "done", pixel, colour=True),
             Probe("pixel among all", (f"{self.caster}.pixels",), "done", pixel, colour=True,

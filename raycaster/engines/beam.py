@@ -165,7 +165,7 @@ class Beam(Engine):
         """Return rows and lanes."""
         return f"{config.screen_geometry.rows}p" + (" x2" if config.pixels == 2 else "")
 
-    def slot_cycles(self, config: Configuration) -> int:
+    def rect_cycles(self, config: Configuration) -> int:
         """Return 0, as all rectangles are tested at once."""
         return 0
 

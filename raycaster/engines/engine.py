@@ -98,12 +98,12 @@ class Engine(ABC):
         """
 
     @abstractmethod
-    def slot_cycles(self, config: Configuration) -> int:
+    def rect_cycles(self, config: Configuration) -> int:
         """Return the cycles from one rectangle to the next; 0 if all are tested at once."""
 
     @abstractmethod
     def pass_latency(self, config: Configuration) -> int:
-        """Return the cycles from the end of a pass's last slot to the first cycle of the next pass."""
+        """Return the cycles from the end of a pass's last rectangle to the first cycle of the next pass."""
 
     @abstractmethod
     def group_cycles(self, config: Configuration) -> int:
@@ -139,9 +139,9 @@ class LineBufferedEngine(Engine):
         super().refuse(options)
 
     def group_cycles(self, config: Configuration) -> int:
-        """Add the slots for the rectangles of each pass, the latency of each pass, and the overhead of a group."""
-        slots = sum(mask.bit_count() for mask in config.passes) * self.slot_cycles(config)
-        return slots + len(config.passes) * self.pass_latency(config) + self.GROUP_OVERHEAD
+        """Add the cycles for the rectangles of each pass, the latency of each pass, and the overhead of a group."""
+        tests = sum(mask.bit_count() for mask in config.passes) * self.rect_cycles(config)
+        return tests + len(config.passes) * self.pass_latency(config) + self.GROUP_OVERHEAD
 
     def fewest_units(self, config: Configuration) -> Configuration:
         """Return the design with the fewest units that meet the row budget, or one unit per column if none do."""
@@ -159,7 +159,7 @@ class LineBufferedEngine(Engine):
             return
         raise ValueError(
             f"row budget: a group of {config.units} columns takes {config.group_cycles} cycles with "
-            f"{config.rectangles} rectangles, {config.reflections} reflections and {config.slot_cycles} cycles per "
+            f"{config.rectangles} rectangles, {config.reflections} reflections and {config.rect_cycles} cycles per "
             f"rectangle, but a row leaves it {config.group_budget} (less than {config.screen_geometry.row_cycles} "
             f"cycles over {config.groups} groups); take more units or divider bits, fewer rectangles, reflections or "
             "fraction bits, or ALLOW_UNDERRUN=1"

@@ -43,12 +43,12 @@ class Exact(LineBufferedEngine):
         """Return the number of units."""
         return str(config.units)
 
-    def slot_cycles(self, config: Configuration) -> int:
+    def rect_cycles(self, config: Configuration) -> int:
         """Return 1, a rectangle per clock."""
         return 1
 
     def pass_latency(self, config: Configuration) -> int:
-        """Add the stages after the slot: test, depth comparison, cells of a pattern, and storing the ray."""
+        """Add the stages after the last rectangle: test, depth comparison, cells of a pattern, and storing the ray."""
         return WRITE_AT + 2 + (PATTERN_LATENCY if config.patterns else 0)
 
     def group_cycles(self, config: Configuration) -> int:

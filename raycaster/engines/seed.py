@@ -63,7 +63,7 @@ class Seed(LineBufferedEngine):
         """Return fraction and rounding."""
         return f"F{config.fraction_bits}{config.rounding[0]}"
 
-    def slot_cycles(self, config: Configuration) -> int:
+    def rect_cycles(self, config: Configuration) -> int:
         """Return the cycles of a division."""
         return config.divider_steps
 

@@ -24,7 +24,7 @@ from raycaster.rtl.beam.mirror_look_up import mirror_look_up
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.beam.slope_walker import ray_slope, slope_walker
 from raycaster.rtl.common.delay_line import delay_line
-from raycaster.rtl.common.records import Reflector, Sight, candidate_of, fold_of, seen_of, turn_of, winner_of
+from raycaster.rtl.common.records import Reflector, Sight, candidate_of, fold_of, room_image_of, seen_of, winner_of
 from raycaster.rtl.common.widths import index_bits
 
 
@@ -59,11 +59,11 @@ def beam_lane(
     passes, reflections = len(numbers), len(numbers) - 1
     starts = [ENTRY_LATENCY + number * pass_latency(config) for number in range(passes)]
     looked_up = winner_latency(config) + LOOK_UP_LATENCY
-    seen = starts[-1] + winner_latency(config) + cell_latency(config)
-    every_step = (1 << seen) - 1
+    look_up_at = starts[-1] + winner_latency(config) + cell_latency(config)
+    every_step = (1 << look_up_at) - 1
 
     # Bit i: a column was announced i + 1 cycles ago. next_column has a long route, so it is registered before its use.
-    steps = unsigned(seen)
+    steps = unsigned(look_up_at)
 
     if config.turn:
         # Everything that walks along a row starts at 0, and its first step is the start value; later steps are growth.
@@ -79,14 +79,14 @@ def beam_lane(
             elif entered:
                 steps.next = 0
             else:
-                steps.next = concat(steps[seen - 1 :], next_column)
+                steps.next = concat(steps[look_up_at - 1 :], next_column)
 
     else:
         restart = start_line
 
         @always(clk.posedge)
         def follow_columns():
-            steps.next = concat(steps[seen - 1 :], next_column)
+            steps.next = concat(steps[look_up_at - 1 :], next_column)
 
     def step_after(cycles: int):
         return steps(cycles, cycles - 1)
@@ -111,13 +111,13 @@ def beam_lane(
         for first, slope in zip(starts, late_slopes, strict=False)
     ]
     # The image of the room that a ray is in, at the time when its hit is known.
-    images = [turn_of(config).tie({}), *(turn_of(config) for _ in range(reflections))]
+    images = [room_image_of(config).tie({}), *(room_image_of(config) for _ in range(reflections))]
 
     if config.patterns:
         sights = [Sight(index_bits(config)) for _ in numbers]
         cell_finders = [
             hit_cells(
-                clk, turn=image, nearest=hit, winner=winner, slope=slope, camera=camera, sight=sight, config=config
+                clk, image=image, nearest=hit, winner=winner, slope=slope, camera=camera, sight=sight, config=config
             )
             for image, hit, winner, slope, sight in zip(images, hits, winners, late_slopes, sights, strict=True)
         ]
@@ -138,11 +138,11 @@ def beam_lane(
 
     # Values between the steps of two columns belong to neither: a column of several clocks keeps its own until the next
     # step.
-    step_seen = step_after(seen)
+    step_look_up = step_after(look_up_at)
 
     sees = [seen_of(config) for _ in numbers]
     look_ups = [
-        look_up(clk, step_seen, facets=facets, sight=one[-1], seen=seen, config=config)
+        look_up(clk, step_look_up, facets=facets, sight=one[-1], seen=seen, config=config)
         for one, seen in zip(stages, sees, strict=True)
     ]
     # A reflection without a pass sees nothing.

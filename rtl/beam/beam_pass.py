@@ -53,7 +53,7 @@ def beam_pass(
     slope_bits = exact_slope_bits(config)
     straight, signs = ray_slope(aim, config), Signs()
     size, size_1 = Slope(slope_bits), Slope(slope_bits)
-    seen = [facet_of(config).cut(facets, i) for i in tested]
+    tested_facets = [facet_of(config).cut(facets, i) for i in tested]
     grown = [stride_of(config).cut(growths, i) for i in tested]
     walks, hits = [walk_of(config) for _ in tested], [candidate_of(config) for _ in tested]
 
@@ -97,7 +97,7 @@ def beam_pass(
     testers = [
         tests(clk, step_way=step, step_bounds=step_bounds, step_slope=step_slope, facet=facet, walk=walk, signs=signs,
             slope=tested_size, index=tied(i, index_bits(config)), hit=hit, staged=is_staged(config))
-        for i, facet, walk, hit in zip(tested, seen, walks, hits, strict=True)
+        for i, facet, walk, hit in zip(tested, tested_facets, walks, hits, strict=True)
     ]  # fmt: skip
     all_hits = side_by_side([hit.word for hit in hits])
     contests = nearest_of(clk, all_hits, nearest, rounds(config), contest_latency(config))

@@ -8,29 +8,29 @@ from raycaster.hdl.signals import bit, signed, unsigned
 
 
 @block
-def cell_step(clk, before, after, place: int):
+def cell_step(clk, before, after, power: int):
     """Find one bit of the quotient of before.rest and before.divisor: a step of restoring division.
 
-    The bit's weight is 1 << place. If nothing is hit, the quotient may be too large, and is don't care.
+    The bit's weight is 1 << power. If nothing is hit, the quotient may be too large, and is don't care.
 
     Args:
         clk: the clock.
-        before: `CellDivision` of place + 1; a new one each cycle.
-        after: `CellDivision` of place; output, a cycle after before. odd becomes the quotient's bit if its weight is
+        before: `CellDivision` of power + 1; a new one each cycle.
+        after: `CellDivision` of power; output, a cycle after before. odd becomes the quotient's bit if its weight is
             the cell size, and is before.odd otherwise.
-        place: the number of the quotient's bit.
+        power: the number of the quotient's bit.
     """
     divisor_bits = len(before.divisor)
-    size = place - SMALLEST_CELL_BITS
+    size = power - SMALLEST_CELL_BITS
 
     high = unsigned(divisor_bits + 1)
     difference = signed(divisor_bits + 2)
-    rest, remaining = unsigned(divisor_bits), unsigned(divisor_bits + place)
+    rest, remaining = unsigned(divisor_bits), unsigned(divisor_bits + power)
     fits, odd = bit(), bit()
 
     @always_comb
     def look_at_high():
-        high.next = before.rest[:place]
+        high.next = before.rest[:power]
 
     @always_comb
     def subtract():
@@ -42,7 +42,7 @@ def cell_step(clk, before, after, place: int):
 
     @always_comb
     def bring_down():
-        remaining.next = concat(rest, before.rest[place:])
+        remaining.next = concat(rest, before.rest[power:])
 
     # If nothing is hit, the quotient may be too large, and is don't care.
     @always_comb

@@ -38,27 +38,27 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
     """
     way_q = walk.way_q if walk.has("way_q") else facet.way_q
     numerator_bits, slope_bits = len(hit.numerator), len(slope.dy)
-    sum_bits, product_bits, turn_bits = len(fold.p_x), len(walk.way_p), len(fold.turn_x)
+    sum_bits, product_bits, shift_bits = len(fold.p_x), len(walk.way_p), len(fold.shift_x)
 
-    back, turned, turned_p, turned_q, on_p, on_q, met = (bit() for _ in range(7))
-    offset_p, offset_q, border, turn = signed(sum_bits), signed(sum_bits), signed(product_bits), signed(turn_bits)
+    back, reversed_a, reversed_p, reversed_q, on_p, on_q, met = (bit() for _ in range(7))
+    offset_p, offset_q, border, shift = signed(sum_bits), signed(sum_bits), signed(product_bits), signed(shift_bits)
     on_x, on_y, on_z, flip_p, flip_q = (bit() for _ in range(5))
     # The fields of fold for the plane's axis; mirror_on_p: the last mirror is across p.
-    seen = Record({
-        "turned": 1, "flip_p": 1, "flip_q": 1, "mirror_on_p": 1, "mirror_on_q": 1, "mirror_back": 1, "met": 1,
+    plane_fold = Record({
+        "reversed_a": 1, "flip_p": 1, "flip_q": 1, "mirror_on_p": 1, "mirror_on_q": 1, "mirror_back": 1, "met": 1,
         "offset_p": Signed(sum_bits), "offset_q": Signed(sum_bits), "border": Signed(product_bits),
-        "turn": Signed(turn_bits), "distance": Signed(len(fold.distance)),
+        "shift": Signed(shift_bits), "distance": Signed(len(fold.distance)),
     })  # fmt: skip
-    turned_way_p, turned_way_q = signed(product_bits), signed(product_bits)
+    flipped_way_p, flipped_way_q = signed(product_bits), signed(product_bits)
     folded_p, folded_q = signed(sum_bits), signed(sum_bits)
-    distance = signed(turn_bits + 1)
+    distance = signed(shift_bits + 1)
     beyond_plane = bit()
 
     back_1, folded_p_1, folded_q_1 = bit(), signed(sum_bits), signed(sum_bits)
-    distance_1, border_1 = signed(turn_bits + 1), signed(product_bits)
+    distance_1, border_1 = signed(shift_bits + 1), signed(product_bits)
     beyond_plane_1, clip_p_1, clip_q_1, rising_1, met_1 = (bit() for _ in range(5))
     clipped, folded_clip = signed(sum_bits), signed(sum_bits)
-    numerator = unsigned(turn_bits)
+    numerator = unsigned(shift_bits)
 
     before_border, at_border = bit(), bit()
     beyond_plane_2, before_border_2, at_border_2, clips_2, rising_2, met_2 = (bit() for _ in range(6))
@@ -66,20 +66,20 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
     numerator_2 = unsigned(numerator_bits)
     e, size_a = unsigned(slope_bits), unsigned(slope_bits)
 
-    # back: D[a] is negative; e is |D[a]|; turned: mirrors have reversed the ray along a.
+    # back: D[a] is negative; e is |D[a]|; reversed_a: mirrors have reversed the ray along a.
     of_back, of_mirror = (fold.back_x, fold.back_y, fold.back_z), (on_x, on_y, on_z)
     choices = [
         by_axis(facet.axis, *along(*values), chosen, width=len(chosen))
         for along, values, chosen in (
             (along_a, (signs.dx, signs.dy, signs.dz), back),
             (along_a, (slope.dx, slope.dy, slope.dz), size_a if staged else e),
-            (along_a, of_back, turned), (along_p, of_back, turned_p), (along_q, of_back, turned_q),
+            (along_a, of_back, reversed_a), (along_p, of_back, reversed_p), (along_q, of_back, reversed_q),
             (along_p, of_mirror, on_p), (along_q, of_mirror, on_q),
             (along_a, (fold.met_x, fold.met_y, fold.met_z), met),
             (along_a, (fold.p_x, fold.p_y, fold.p_z), offset_p),
             (along_a, (fold.q_x, fold.q_y, fold.q_z), offset_q),
             (along_a, (fold.border_x, fold.border_y, fold.border_z), border),
-            (along_a, (fold.turn_x, fold.turn_y, fold.turn_z), turn),
+            (along_a, (fold.shift_x, fold.shift_y, fold.shift_z), shift),
         )
     ]  # fmt: skip
     bounds = [
@@ -98,50 +98,51 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
         on_z.next = fold.axis == 2
 
     @always_comb
-    def compare_turns():
-        flip_p.next = turned != turned_p
-        flip_q.next = turned != turned_q
+    def compare_directions():
+        flip_p.next = reversed_a != reversed_p
+        flip_q.next = reversed_a != reversed_q
 
-    chosen = seen.joined(
-        turned=turned, flip_p=flip_p, flip_q=flip_q, mirror_on_p=on_p, mirror_on_q=on_q, mirror_back=fold.mirror_back,
-        met=met, offset_p=offset_p, offset_q=offset_q, border=border, turn=turn, distance=fold.distance,
+    chosen = plane_fold.joined(
+        reversed_a=reversed_a, flip_p=flip_p, flip_q=flip_q, mirror_on_p=on_p, mirror_on_q=on_q,
+        mirror_back=fold.mirror_back, met=met, offset_p=offset_p, offset_q=offset_q, border=border, shift=shift,
+        distance=fold.distance,
     )  # fmt: skip
 
     if staged:
 
         @always(clk.posedge)
         def hold_chosen():
-            seen.word.next = chosen
+            plane_fold.word.next = chosen
 
     else:
 
         @always_comb
         def pass_chosen():
-            seen.word.next = chosen
+            plane_fold.word.next = chosen
 
     # On the same axis, the plane must lie on the side that the folded ray runs to.
     @always_comb
     def compare_planes():
-        if back != seen.turned:
-            beyond_plane.next = facet.distance < seen.distance
+        if back != plane_fold.reversed_a:
+            beyond_plane.next = facet.distance < plane_fold.distance
         else:
-            beyond_plane.next = facet.distance > seen.distance
+            beyond_plane.next = facet.distance > plane_fold.distance
 
     # ~way is one less than -way; the fold's offset is one more to compensate.
     @always_comb
-    def turn_ways():
-        turned_way_p.next = walk.way_p
-        turned_way_q.next = way_q
-        if seen.flip_p:
-            turned_way_p.next = ~walk.way_p
-        if seen.flip_q:
-            turned_way_q.next = ~way_q
+    def flip_ways():
+        flipped_way_p.next = walk.way_p
+        flipped_way_q.next = way_q
+        if plane_fold.flip_p:
+            flipped_way_p.next = ~walk.way_p
+        if plane_fold.flip_q:
+            flipped_way_q.next = ~way_q
 
     @always_comb
     def fold_ways():
-        folded_p.next = seen.offset_p + turned_way_p
-        folded_q.next = seen.offset_q + turned_way_q
-        distance.next = facet.distance - seen.turn
+        folded_p.next = plane_fold.offset_p + flipped_way_p
+        folded_q.next = plane_fold.offset_q + flipped_way_q
+        distance.next = facet.distance - plane_fold.shift
 
     @always(clk.posedge)
     def stage_1():
@@ -150,19 +151,19 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
             folded_p_1.next = folded_p
             folded_q_1.next = folded_q
             distance_1.next = distance
-            border_1.next = seen.border
+            border_1.next = plane_fold.border
             beyond_plane_1.next = beyond_plane
-            clip_p_1.next = seen.mirror_on_p
-            clip_q_1.next = seen.mirror_on_q
-            rising_1.next = seen.mirror_back == back
-            met_1.next = seen.met
+            clip_p_1.next = plane_fold.mirror_on_p
+            clip_q_1.next = plane_fold.mirror_on_q
+            rising_1.next = plane_fold.mirror_back == back
+            met_1.next = plane_fold.met
 
     if staged:
 
         @always_comb
         def choose_clipped():
             folded_clip.next = folded_p
-            if seen.mirror_on_q:
+            if plane_fold.mirror_on_q:
                 folded_clip.next = folded_q
 
         @always(clk.posedge)

@@ -14,7 +14,7 @@ from raycaster.rtl.common.widths import CELL_BITS
 
 
 @block
-def hit_cell(clk, turn, eye, back, slope, numerator, denominator, cell_size, odd):
+def hit_cell(clk, shift, eye, back, slope, numerator, denominator, cell_size, odd):
     """Find the cell of its pattern in which a rectangle is hit, along one axis; one hit per clock.
 
     (E' * denominator + D' * numerator) / denominator is a world coordinate, with the mirrored eye E' = E + T and slope
@@ -22,20 +22,20 @@ def hit_cell(clk, turn, eye, back, slope, numerator, denominator, cell_size, odd
 
     Args:
         clk: the clock.
-        turn: signed; T.
-        eye: unsigned; E, read with turn.
-        back: flag; D' is -D. Read with turn.
-        slope: signed; D, read a cycle after turn.
-        numerator: unsigned; t = numerator / denominator of the hit, read with turn.
-        denominator: unsigned, one bit narrower than slope; read with turn.
-        cell_size: unsigned, 3 bits; log2 of the cell's size in world units, minus three. Read with turn.
-        odd: output flag; the lowest bit of floor(coordinate / cell), `CELL_LATENCY` - 1 cycles after turn. A cell as
+        shift: signed; T.
+        eye: unsigned; E, read with shift.
+        back: flag; D' is -D. Read with shift.
+        slope: signed; D, read a cycle after shift.
+        numerator: unsigned; t = numerator / denominator of the hit, read with shift.
+        denominator: unsigned, one bit narrower than slope; read with shift.
+        cell_size: unsigned, 3 bits; log2 of the cell's size in world units, minus three. Read with shift.
+        odd: output flag; the lowest bit of floor(coordinate / cell), `CELL_LATENCY` - 1 cycles after shift. A cell as
             large as the world, or larger, is even.
     """
-    slope_bits, numerator_bits, base_bits = len(denominator), len(numerator), len(turn) + 1
+    slope_bits, numerator_bits, base_bits = len(denominator), len(numerator), len(shift) + 1
     way_bits, base_way_bits = slope_bits + 1 + numerator_bits, base_bits + slope_bits
     dividend_bits = slope_bits + COORDINATE_BITS
-    places = range(COORDINATE_BITS - 1, SMALLEST_CELL_BITS - 1, -1)
+    powers = range(COORDINATE_BITS - 1, SMALLEST_CELL_BITS - 1, -1)
 
     base_2, base_3 = signed(base_bits), signed(base_bits)
     numerator_2, numerator_3 = signed(numerator_bits + 1), signed(numerator_bits + 1)
@@ -46,12 +46,12 @@ def hit_cell(clk, turn, eye, back, slope, numerator, denominator, cell_size, odd
     slope_3 = signed(slope_bits + 1)
     base_way, way = signed(base_way_bits), signed(way_bits)
     total = signed(max(way_bits, base_way_bits) + 1)
-    stages = [CellDivision(slope_bits, place + 1) for place in (*places, places[-1] - 1)]
+    stages = [CellDivision(slope_bits, power + 1) for power in (*powers, powers[-1] - 1)]
     dividend, quotient = stages[0], stages[-1]
 
     @always(clk.posedge)
     def stage_2():
-        base_2.next = turn + eye
+        base_2.next = shift + eye
         back_2.next = back
         cell_2.next = cell_size
         numerator_2.next = numerator
@@ -88,8 +88,8 @@ def hit_cell(clk, turn, eye, back, slope, numerator, denominator, cell_size, odd
         dividend.word.next = start
 
     steps = [
-        cell_step(clk, before=before, after=after, place=place)
-        for place, (before, after) in zip(places, pairwise(stages), strict=True)
+        cell_step(clk, before=before, after=after, power=power)
+        for power, (before, after) in zip(powers, pairwise(stages), strict=True)
     ]
 
     @always_comb

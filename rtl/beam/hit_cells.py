@@ -10,11 +10,11 @@ from raycaster.rtl.beam.hit_cell import hit_cell
 from raycaster.rtl.common.by_axis import along_u, along_v, by_axis
 from raycaster.rtl.common.delay_line import delay_line
 from raycaster.rtl.common.records import winner_of
-from raycaster.rtl.common.widths import AXIS_BITS, CELL_BITS, exact_slope_bits, eye_bits, turn_bits
+from raycaster.rtl.common.widths import AXIS_BITS, CELL_BITS, exact_slope_bits, eye_bits, shift_bits
 
 
 @block
-def hit_cells(clk, turn, nearest, winner, slope, camera, sight, config: Configuration):
+def hit_cells(clk, image, nearest, winner, slope, camera, sight, config: Configuration):
     """Find the cells of its pattern in which a rectangle is hit: one hit per clock, `CELL_LATENCY` cycles later.
 
     With the mirrored eye E' and slope D' (Heckbert and Hanrahan 1984), the ray is at E' + D' t, and t is the hit's
@@ -22,7 +22,7 @@ def hit_cells(clk, turn, nearest, winner, slope, camera, sight, config: Configur
 
     Args:
         clk: the clock.
-        turn: `Turn` of the ray; read a cycle after nearest.
+        image: `RoomImage` of the ray; read a cycle after nearest.
         nearest: `Candidate`; the nearest hit.
         winner: `Winner`; the rectangle of nearest, in the same cycle.
         slope: `Direction`; D, read `CELL_SLOPE_AT` cycles after nearest.
@@ -30,10 +30,10 @@ def hit_cells(clk, turn, nearest, winner, slope, camera, sight, config: Configur
         sight: `Sight`; output, winner with odd_u and odd_v, `CELL_LATENCY` cycles after it.
         config: the design.
     """
-    turn_width, slope_bits = turn_bits(config), exact_slope_bits(config)
+    shift_width, slope_bits = shift_bits(config), exact_slope_bits(config)
     axis_1, axis_2, cell_1 = unsigned(AXIS_BITS), unsigned(AXIS_BITS), unsigned(CELL_BITS)
     numerator_1, denominator_1 = unsigned(eye_bits(config) - 1), unsigned(slope_bits)
-    turn_u, turn_v = signed(turn_width), signed(turn_width)
+    shift_u, shift_v = signed(shift_width), signed(shift_width)
     slope_u, slope_v = signed(slope_bits + 1), signed(slope_bits + 1)
     eye_u, eye_v = unsigned(COORDINATE_BITS), unsigned(COORDINATE_BITS)
     back_u, back_v, odd_u, odd_v = bit(), bit(), bit(), bit()
@@ -50,23 +50,23 @@ def hit_cells(clk, turn, nearest, winner, slope, camera, sight, config: Configur
     def stage_2():
         axis_2.next = axis_1
 
-    of_turn, of_back = (turn.turn_x, turn.turn_y, turn.turn_z), (turn.back_x, turn.back_y, turn.back_z)
+    of_shift, of_back = (image.shift_x, image.shift_y, image.shift_z), (image.back_x, image.back_y, image.back_z)
     of_eye, of_slope = (camera.x, camera.y, camera.z), (slope.x, slope.y, slope.z)
     choices = [
         by_axis(axis, *along(*values), chosen, width=len(chosen))
         for along, axis, values, chosen in (
-            (along_u, axis_1, of_turn, turn_u), (along_u, axis_1, of_back, back_u), (along_u, axis_1, of_eye, eye_u),
-            (along_v, axis_1, of_turn, turn_v), (along_v, axis_1, of_back, back_v), (along_v, axis_1, of_eye, eye_v),
+            (along_u, axis_1, of_shift, shift_u), (along_u, axis_1, of_back, back_u), (along_u, axis_1, of_eye, eye_u),
+            (along_v, axis_1, of_shift, shift_v), (along_v, axis_1, of_back, back_v), (along_v, axis_1, of_eye, eye_v),
             (along_u, axis_2, of_slope, slope_u), (along_v, axis_2, of_slope, slope_v),
         )
     ]  # fmt: skip
     cells = [
         hit_cell(
-            clk, turn=turn_there, eye=eye, back=back, slope=slope_there, numerator=numerator_1,
+            clk, shift=shift_there, eye=eye, back=back, slope=slope_there, numerator=numerator_1,
             denominator=denominator_1, cell_size=cell_1, odd=odd,
         )
-        for turn_there, eye, back, slope_there, odd in (
-            (turn_u, eye_u, back_u, slope_u, odd_u), (turn_v, eye_v, back_v, slope_v, odd_v),
+        for shift_there, eye, back, slope_there, odd in (
+            (shift_u, eye_u, back_u, slope_u, odd_u), (shift_v, eye_v, back_v, slope_v, odd_v),
         )
     ]  # fmt: skip
     delay = delay_line(clk, winner.word, late.word, CELL_LATENCY)

@@ -57,13 +57,13 @@ def nearest_of_two(clk, first, second, nearest, latency: int):
             second_weight = intbv(0)[more_bits:]
             first_sum = intbv(0)[more_bits:]
             second_sum = intbv(0)[more_bits:]
-            for place in range(high_bits):
+            for i in range(high_bits):
                 first_weight[:] = 0
                 second_weight[:] = 0
-                if second_high[place]:
-                    first_weight[:] = first.numerator << place
-                if first_high[place]:
-                    second_weight[:] = second.numerator << place
+                if second_high[i]:
+                    first_weight[:] = first.numerator << i
+                if first_high[i]:
+                    second_weight[:] = second.numerator << i
                 first_sum[:] = first_sum + first_weight
                 second_sum[:] = second_sum + second_weight
             first_above.next = first_sum

@@ -23,18 +23,18 @@ def ray_fold(clk, before, last, slope, fold):
 
     Args:
         clk: the clock.
-        before: `Turn` of the fold at the previous mirror, all 0 if there was none.
+        before: `RoomImage` of the fold at the previous mirror, all 0 if there was none.
         last: `Reflector`; the mirror, read in the same cycle as before.
         slope: `Direction`; D, read a cycle after before and last.
         fold: `Fold`; output, `FOLD_LATENCY` cycles after before and last.
     """
     part_bits, product_bits = len(fold.p_x), len(fold.border_x)
-    distance_bits, turn_bits = len(last.distance), len(fold.turn_x)
+    distance_bits, shift_bits = len(last.distance), len(fold.shift_x)
 
-    doubled, turn, turned = (signed(turn_bits) for _ in range(3))
-    difference = signed(turn_bits + 1)
+    doubled, shift, mirrored = (signed(shift_bits) for _ in range(3))
+    difference = signed(shift_bits + 1)
 
-    turn_x, turn_y, turn_z = (signed(turn_bits) for _ in range(3))
+    shift_x, shift_y, shift_z = (signed(shift_bits) for _ in range(3))
     back_x, back_y, back_z, x_back, y_back, z_back, mirror_back = (bit() for _ in range(7))
     folds_x, folds_y, folds_z = bit(), bit(), bit()
     met_x, met_y, met_z = (bit() for _ in range(3))
@@ -43,7 +43,7 @@ def ray_fold(clk, before, last, slope, fold):
 
     x_by_y, x_by_z, y_by_x, y_by_z, z_by_x, z_by_y = (signed(part_bits) for _ in range(6))
     border_x, border_y, border_z = (signed(product_bits) for _ in range(3))
-    turn_x_2, turn_y_2, turn_z_2 = (signed(turn_bits) for _ in range(3))
+    shift_x_2, shift_y_2, shift_z_2 = (signed(shift_bits) for _ in range(3))
     back_x_2, back_y_2, back_z_2, mirror_back_2 = (bit() for _ in range(4))
     met_x_2, met_y_2, met_z_2 = (bit() for _ in range(3))
     axis_2 = unsigned(AXIS_BITS)
@@ -55,14 +55,14 @@ def ray_fold(clk, before, last, slope, fold):
     sum_xy_1, sum_xz_1, sum_yz_1 = (signed(part_bits) for _ in range(3))
 
     met_x_3, met_y_3, met_z_3, back_x_3, back_y_3, back_z_3, mirror_back_3 = (bit() for _ in range(7))
-    turn_x_3, turn_y_3, turn_z_3 = (signed(turn_bits) for _ in range(3))
+    shift_x_3, shift_y_3, shift_z_3 = (signed(shift_bits) for _ in range(3))
     p_x_3, p_y_3, p_z_3, q_x_3, q_y_3, q_z_3 = (signed(part_bits) for _ in range(6))
     border_x_3, border_y_3, border_z_3 = (signed(product_bits) for _ in range(3))
     axis_3 = unsigned(AXIS_BITS)
     distance_3 = signed(distance_bits)
 
     # Along the mirror's axis T becomes 2 n - T.
-    turn_there = by_axis(last.axis, before.turn_x, before.turn_y, before.turn_z, turn, width=turn_bits)
+    shift_there = by_axis(last.axis, before.shift_x, before.shift_y, before.shift_z, shift, width=shift_bits)
 
     @always_comb
     def double():
@@ -70,12 +70,12 @@ def ray_fold(clk, before, last, slope, fold):
 
     @always_comb
     def mirror():
-        difference.next = doubled - turn
+        difference.next = doubled - shift
 
     # Mirrors of one scene are within the world; while a scene is loaded this may overflow, and is don't care.
     @always_comb
     def fit():
-        turned.next = difference[turn_bits:].signed()
+        mirrored.next = difference[shift_bits:].signed()
 
     # T, the axes along which mirrors have reversed the ray, and the axes of all mirrors at the point that it leaves.
     @always(clk.posedge)
@@ -86,38 +86,38 @@ def ray_fold(clk, before, last, slope, fold):
         back_x.next = before.back_x
         back_y.next = before.back_y
         back_z.next = before.back_z
-        turn_x.next = before.turn_x
-        turn_y.next = before.turn_y
-        turn_z.next = before.turn_z
+        shift_x.next = before.shift_x
+        shift_y.next = before.shift_y
+        shift_z.next = before.shift_z
         if last.axis == 0:
             met_x.next = True
             back_x.next = not before.back_x
-            turn_x.next = turned
+            shift_x.next = mirrored
         elif last.axis == 1:
             met_y.next = True
             back_y.next = not before.back_y
-            turn_y.next = turned
+            shift_y.next = mirrored
         else:
             met_z.next = True
             back_z.next = not before.back_z
-            turn_z.next = turned
+            shift_z.next = mirrored
         axis_1.next = last.axis
         distance_1.next = last.distance
 
     @always(clk.posedge)
     def stage_2():
-        x_by_y.next = turn_x * slope.y
-        x_by_z.next = turn_x * slope.z
-        y_by_x.next = turn_y * slope.x
-        y_by_z.next = turn_y * slope.z
-        z_by_x.next = turn_z * slope.x
-        z_by_y.next = turn_z * slope.y
+        x_by_y.next = shift_x * slope.y
+        x_by_z.next = shift_x * slope.z
+        y_by_x.next = shift_y * slope.x
+        y_by_z.next = shift_y * slope.z
+        z_by_x.next = shift_z * slope.x
+        z_by_y.next = shift_z * slope.y
         border_x.next = distance_1 * slope.x
         border_y.next = distance_1 * slope.y
         border_z.next = distance_1 * slope.z
-        turn_x_2.next = turn_x
-        turn_y_2.next = turn_y
-        turn_z_2.next = turn_z
+        shift_x_2.next = shift_x
+        shift_y_2.next = shift_y
+        shift_z_2.next = shift_z
         back_x_2.next = back_x
         back_y_2.next = back_y
         back_z_2.next = back_z
@@ -194,9 +194,9 @@ def ray_fold(clk, before, last, slope, fold):
         back_x_3.next = back_x_2
         back_y_3.next = back_y_2
         back_z_3.next = back_z_2
-        turn_x_3.next = turn_x_2
-        turn_y_3.next = turn_y_2
-        turn_z_3.next = turn_z_2
+        shift_x_3.next = shift_x_2
+        shift_y_3.next = shift_y_2
+        shift_z_3.next = shift_z_2
         p_x_3.next = p_x
         p_y_3.next = p_y
         p_z_3.next = p_z
@@ -211,7 +211,7 @@ def ray_fold(clk, before, last, slope, fold):
 
     result = fold.joined(
         met_x=met_x_3, met_y=met_y_3, met_z=met_z_3, back_x=back_x_3, back_y=back_y_3, back_z=back_z_3,
-        turn_x=turn_x_3, turn_y=turn_y_3, turn_z=turn_z_3, mirror_back=mirror_back_3,
+        shift_x=shift_x_3, shift_y=shift_y_3, shift_z=shift_z_3, mirror_back=mirror_back_3,
         p_x=p_x_3, p_y=p_y_3, p_z=p_z_3, q_x=q_x_3, q_y=q_y_3, q_z=q_z_3,
         border_x=border_x_3, border_y=border_y_3, border_z=border_z_3, axis=axis_3, distance=distance_3,
     )  # fmt: skip

@@ -19,7 +19,7 @@ from raycaster.rtl.common.widths import (
     fold_bits,
     index_bits,
     position_bits,
-    turn_bits,
+    shift_bits,
     walk_bits,
 )
 
@@ -237,34 +237,34 @@ class Reflector(Record):
         super().__init__({"at_mirror": 1, "axis": AXIS_BITS, "distance": Signed(distance_bits)})
 
 
-class Turn(Record):
+class RoomImage(Record):
     """The image of the room in which a straight ray is after its mirrors so far; see `ray_fold`.
 
     met_x, met_y, met_z: a mirror on that axis was met at the point that the ray left last; back_x, back_y, back_z: the
-    image is reversed along that axis; turn_x, turn_y, turn_z: T, the offset of the image.
+    image is reversed along that axis; shift_x, shift_y, shift_z: T, the shift of the image.
     """
 
-    def __init__(self, turn_bits: int):
+    def __init__(self, shift_bits: int):
         flags = dict.fromkeys(("met_x", "met_y", "met_z", "back_x", "back_y", "back_z"), 1)
-        super().__init__({**flags, **dict.fromkeys(("turn_x", "turn_y", "turn_z"), Signed(turn_bits))})
+        super().__init__({**flags, **dict.fromkeys(("shift_x", "shift_y", "shift_z"), Signed(shift_bits))})
 
 
-def turn_of(config: Configuration) -> Turn:
-    """Return a `Turn` sized for this configuration."""
-    return Turn(turn_bits(config))
+def room_image_of(config: Configuration) -> RoomImage:
+    """Return a `RoomImage` sized for this configuration."""
+    return RoomImage(shift_bits(config))
 
 
 class Fold(Record):
     """The folding of a straight ray through all mirrors so far back into the room; see `ray_fold`.
 
-    It starts with the fields of a `Turn`, which together are `image`. mirror_back: the folded ray leaves the last
+    It starts with the fields of a `RoomImage`, which together are `image`. mirror_back: the folded ray leaves the last
     mirror in the negative direction; p_x ..., q_x ...: for a rectangle on that axis, the offset added to its way along
     p and q (see `Walk`), plus one if the way is complemented; border_x ...: n D with the last mirror's n; axis,
     distance: those of the last mirror.
     """
 
-    def __init__(self, product_bits: int, walk_width: int, turn_bits: int, distance: int = DISTANCE_BITS):
-        image = Turn(turn_bits).layout
+    def __init__(self, product_bits: int, walk_width: int, shift_bits: int, distance: int = DISTANCE_BITS):
+        image = RoomImage(shift_bits).layout
         super().__init__(
             image
             | {"mirror_back": 1}
@@ -278,7 +278,7 @@ class Fold(Record):
 
 def fold_of(config: Configuration) -> Fold:
     """Return a `Fold` sized for this configuration."""
-    return Fold(fold_bits(config), walk_bits(config), turn_bits(config))
+    return Fold(fold_bits(config), walk_bits(config), shift_bits(config))
 
 
 class Candidate(Record):

@@ -101,7 +101,7 @@ def wide_walk_bits(config: Configuration) -> int:
     return (WORLD_SIZE * max(steepest_slope(config), config.units)).bit_length() + 1
 
 
-def turn_bits(config: Configuration) -> int:
+def shift_bits(config: Configuration) -> int:
     """Width of a component of T (see `ray_fold`), with sign: mirrors on an axis add and subtract twice their distances.
 
     In pairs they cancel the camera's position, so each pair, or a single mirror, contributes at most 2 * 511.
@@ -114,10 +114,10 @@ def fold_bits(config: Configuration) -> int:
     """Width of a product at the folded ray, with sign.
 
     It is the sum of (n - T[a]) D[u] and T[u] D[a]. One mirror makes one component of T nonzero, more make both. T has
-    `turn_bits`, so |T| <= t = 1 << (turn_bits - 1), and the sum is at most (511 + m t) * the steepest slope, with m = 1
-    for one mirror and m = 2 for more.
+    `shift_bits`, so |T| <= t = 1 << (shift_bits - 1), and the sum is at most (511 + m t) * the steepest slope, with
+    m = 1 for one mirror and m = 2 for more.
     """
-    offsets = min(config.reflections, 2) << (turn_bits(config) - 1)
+    offsets = min(config.reflections, 2) << (shift_bits(config) - 1)
     return ((WORLD_SIZE - 1 + offsets) * steepest_slope(config)).bit_length() + 1
 
 

@@ -30,7 +30,7 @@ def colour_combiner(clk, steps, found, found_colour, found_mirror, picture, miss
         pixel: output `Pixel`; valid from the cycle after the last steps.add_colour.
         config: the design.
     """
-    seen = Colour()
+    ray_colour = Colour()
     red, green, blue = (unsigned(config.colour_bits) for _ in range(3))
 
     share = unsigned(share_bits(config))
@@ -38,17 +38,17 @@ def colour_combiner(clk, steps, found, found_colour, found_mirror, picture, miss
         clk=clk, steps=steps, found=found, found_mirror=found_mirror, share=share, missed=missed, config=config
     )
     channels = [
-        colour_sum(clk=clk, steps=steps, seen=one, share=share, blended=channel, config=config)
-        for one, channel in ((seen.red, red), (seen.green, green), (seen.blue, blue))
+        colour_sum(clk=clk, steps=steps, channel=one, share=share, blended=total, config=config)
+        for one, total in ((ray_colour.red, red), (ray_colour.green, green), (ray_colour.blue, blue))
     ]
 
     # A ray that missed has no reflection, whatever the units find afterwards.
     @always_comb
     def look():
         if found and not missed:
-            seen.word.next = found_colour
+            ray_colour.word.next = found_colour
         else:
-            seen.word.next = picture.background
+            ray_colour.word.next = picture.background
 
     blended = pixel.joined(red=red, green=green, blue=blue)
 

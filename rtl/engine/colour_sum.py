@@ -9,24 +9,24 @@ from raycaster.rtl.common.widths import share_bits
 
 
 @block
-def colour_sum(clk, steps, seen, share, blended, config: Configuration):
-    """Sum up one channel of a pixel: share times seen, added at each steps.add_colour.
+def colour_sum(clk, steps, channel, share, blended, config: Configuration):
+    """Sum up one channel of a pixel: share times channel, added at each steps.add_colour.
 
     Without `config.materials` a share has one bit set. With it and at most two reflections, a share is a product of at
     most two numbers from 0 to 4, the quarters that a mirror reflects or keeps. So at most one of its bits in even
-    places is set, and at most one in odd places: share times seen is a sum of two terms.
+    positions is set, and at most one in odd positions: share times channel is a sum of two terms.
 
     Args:
         clk: the clock.
         steps: `Steps`; only reset_colour, which clears the sum, and add_colour are read.
-        seen: unsigned, 8 bits; the channel that the ray saw, read with steps.add_colour.
+        channel: unsigned, 8 bits; the channel of the ray's colour, read with steps.add_colour.
         share: unsigned, `share_bits` bits, from colour_share; read with steps.add_colour.
         blended: unsigned output, `config.colour_bits` bits; the top bits of the sum. Valid from the cycle after the
             last addition.
         config: the design.
     """
-    places = share_bits(config)
-    sum_bits = CHANNEL_BITS + places - 1  # all shares add up to 1 << (places - 1)
+    width = share_bits(config)
+    sum_bits = CHANNEL_BITS + width - 1  # all shares add up to 1 << (width - 1)
     low = sum_bits - config.colour_bits
 
     weighted, total, next_total = (unsigned(sum_bits) for _ in range(3))
@@ -35,16 +35,16 @@ def colour_sum(clk, steps, seen, share, blended, config: Configuration):
 
         @always_comb
         def weigh():
-            weighted.next = seen
-            for place in range(1, places):
-                if share[place]:
-                    weighted.next = seen << place
+            weighted.next = channel
+            for i in range(1, width):
+                if share[i]:
+                    weighted.next = channel << i
 
     elif config.reflections > 2:
 
         @always_comb
         def weigh():
-            weighted.next = seen * share
+            weighted.next = channel * share
 
     else:
         at_even, at_odd = unsigned(sum_bits), unsigned(sum_bits)
@@ -53,12 +53,12 @@ def colour_sum(clk, steps, seen, share, blended, config: Configuration):
         def weigh():
             at_even.next = 0
             at_odd.next = 0
-            for place in range(0, places, 2):
-                if share[place]:
-                    at_even.next = seen << place
-            for place in range(1, places, 2):
-                if share[place]:
-                    at_odd.next = seen << place
+            for i in range(0, width, 2):
+                if share[i]:
+                    at_even.next = channel << i
+            for i in range(1, width, 2):
+                if share[i]:
+                    at_odd.next = channel << i
 
         @always_comb
         def join():

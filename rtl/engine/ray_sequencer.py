@@ -15,18 +15,18 @@ RayState = enum("IDLE", "GENERATE", "TRACE", "BLEND", "DONE")
 
 
 def ends_early(config: Configuration) -> bool:
-    """Return True if a design ends rectangles within their slot, which must be longer than early_out takes."""
-    return config.culling and config.slot_cycles > EARLY_OUT_AT + 1
+    """Return True if a design ends rectangles early, which takes more cycles per rectangle than early_out does."""
+    return config.culling and config.rect_cycles > EARLY_OUT_AT + 1
 
 
 @block
 def ray_sequencer(
-    clk, reset_ray_caster, enable, picture, rects, steps, in_flight, fate, shadow_pass, early_out, done, slot_cycles,
+    clk, reset_ray_caster, enable, picture, rects, steps, in_flight, fate, shadow_pass, early_out, done, rect_cycles,
     config: Configuration,
 ):  # fmt: skip
     """Cycle through the usable rectangles once per ray, for the primary ray and each reflection, then raise done.
 
-    A new rectangle starts every `slot_cycles` cycles, with steps.find_intersection. When nothing is in flight after the
+    A new rectangle starts every `rect_cycles` cycles, with steps.find_intersection. When nothing is in flight after the
     last rectangle, BLEND follows, and then the next ray. In a fixed scene, the primary ray and each reflection cycle
     through their own sets of rectangles that they may hit, instead of the usable ones.
 
@@ -42,7 +42,7 @@ def ray_sequencer(
       again before the next group.
     - fate.any_towards is valid in the cycle after steps.find_intersection, from the units' registers, and belongs to
       that rectangle until its early_out, `EARLY_OUT_AT` cycles after steps.find_intersection. There is time for one
-      register, in the control. early_out ends the slot of a rectangle that no ray runs towards, and clears its bit of
+      register, in the control. early_out ends the test of a rectangle that no ray runs towards, and clears its bit of
       in_flight; a cycle later the rectangle would be past that bit, and its division would be stored.
 
     Args:
@@ -62,7 +62,7 @@ def ray_sequencer(
         early_out: flag, `EARLY_OUT_AT` cycles after steps.find_intersection; no ray runs towards that rectangle. Tied
             to 0 if rectangles are not ended early.
         done: output flag; all rays have been traced. High until reset_ray_caster.
-        slot_cycles: cycles from one rectangle to the next.
+        rect_cycles: cycles from one rectangle to the next.
         config: the design.
     """
     write_at, dropped = len(in_flight) - 1, EARLY_OUT_AT
@@ -81,7 +81,7 @@ def ray_sequencer(
 
     sequencer = rect_sequencer(
         clk=clk, reset_ray_caster=stop, start_ray=restart, wanted=wanted, early_out=early_out,
-        index=rects.index, fetch=rects.fetch, fetched=fetched, starting=starting, slot_cycles=slot_cycles,
+        index=rects.index, fetch=rects.fetch, fetched=fetched, starting=starting, rect_cycles=rect_cycles,
         config=config,
     )  # fmt: skip
 

@@ -10,38 +10,38 @@ from raycaster.rtl.common.widths import index_bits
 
 @block
 def rect_sequencer(
-    clk, reset_ray_caster, start_ray, wanted, early_out, index, fetch, fetched, starting, slot_cycles,
+    clk, reset_ray_caster, start_ray, wanted, early_out, index, fetch, fetched, starting, rect_cycles,
     config: Configuration,
 ):  # fmt: skip
-    """Give each wanted rectangle a slot of `slot_cycles` cycles, in ascending order, from the cycle after start_ray on.
+    """Give each wanted rectangle `rect_cycles` cycles, in ascending order, from the cycle after start_ray on.
 
     Args:
         clk: the clock.
         reset_ray_caster: flag; synchronous reset, after which nothing is fetched.
-        start_ray: strobe; the next cycle begins the first slot.
+        start_ray: strobe; the next cycle begins the first rectangle's test.
         wanted: unsigned, `config.rectangles` bits, one per rectangle; read in the cycle before start_ray.
-        early_out: flag; this cycle is the last of the slot.
+        early_out: flag; this cycle is the last of the rectangle's test.
         index: unsigned output, `index_bits` bits; the rectangle that the memory must fetch, valid with fetch.
-        fetch: output strobe, in the cycle before a slot; the memory must fetch the rectangle. It also comes after the
-            last slot, when index is don't care.
-        fetched: output flag; a slot is under way, and the memory holds its rectangle.
-        starting: output flag; first cycle of a slot.
-        slot_cycles: cycles of a slot that does not end early.
+        fetch: output strobe, in the cycle before a test; the memory must fetch the rectangle. It also comes after the
+            last test, when index is don't care.
+        fetched: output flag; a test is under way, and the memory holds its rectangle.
+        starting: output flag; first cycle of a test.
+        rect_cycles: cycles of a test that does not end early.
         config: the design.
     """
     rectangles = config.rectangles
-    last_slot = slot_cycles - 1
+    last_cycle = rect_cycles - 1
 
-    slot = unsigned(bits_for(slot_cycles))
+    cycle = unsigned(bits_for(rect_cycles))
     candidates, waiting, others = (unsigned(rectangles) for _ in range(3))
     lowest, upcoming = (unsigned(index_bits(config)) for _ in range(2))
     offered, take = bit(), bit()
 
     @always_comb
     def see_take():
-        take.next = start_ray or (fetched and (early_out or slot == last_slot))
+        take.next = start_ray or (fetched and (early_out or cycle == last_cycle))
 
-    # While no slot is under way, the next ray's first rectangle is chosen: that ray wants all of them again.
+    # While no test is under way, the next ray's first rectangle is chosen: that ray wants all of them again.
     @always_comb
     def choose_candidates():
         if take:
@@ -74,18 +74,18 @@ def rect_sequencer(
         fetch.next = take
 
     @always(clk.posedge)
-    def take_slots():
+    def advance():
         if reset_ray_caster:
             fetched.next = False
         elif take:
             fetched.next = offered
-        if start_ray or early_out or slot == last_slot:
-            slot.next = 0
+        if start_ray or early_out or cycle == last_cycle:
+            cycle.next = 0
         else:
-            slot.next = slot + 1
+            cycle.next = cycle + 1
 
     @always_comb
     def start():
-        starting.next = fetched and slot == 0
+        starting.next = fetched and cycle == 0
 
     return instances()

@@ -180,7 +180,7 @@ def rect_setup(
         if at_hand_2 and not reset:
             load.next[number_2] = True
 
-    seen = facet.joined(
+    new_facet = facet.joined(
         usable=usable_2, axis=axis_2, distance=distance_2, way_q=way_q, colour=look_2.colour, mirror=look_2.mirror,
         kind=look_2.kind, cell=look_2.cell, colour_2=look_2.colour_2,
     )  # fmt: skip
@@ -191,7 +191,7 @@ def rect_setup(
     @always(clk.posedge)
     def present():
         if at_hand_2:
-            facet.word.next = seen
+            facet.word.next = new_facet
             start.word.next = first
 
     if not config.turn:

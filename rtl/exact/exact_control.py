@@ -48,7 +48,7 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
     sequencer = ray_sequencer(
         clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, picture=picture, rects=rects, steps=steps,
         in_flight=in_flight, fate=fate, shadow_pass=shadow_pass, early_out=tied(0, 1), done=done,
-        slot_cycles=config.slot_cycles, config=config,
+        rect_cycles=config.rect_cycles, config=config,
     )  # fmt: skip
 
     if config.light:

@@ -37,7 +37,7 @@ def extent_tester(
     way_bits = distance_bits + slope_bits
 
     lower, upper, near, far = (signed(coordinate_bits) for _ in range(4))
-    turned_eye = signed(len(eye))
+    flipped_eye = signed(len(eye))
     # One bit more than a signed distance needs: while signals settle, the operands may come from two rays.
     to_near, to_far = signed(len(eye) + 1), signed(len(eye) + 1)
 
@@ -54,19 +54,19 @@ def extent_tester(
         upper.next = high
 
     @always_comb
-    def turn():
+    def complement():
         near.next = lower
         far.next = upper
-        turned_eye.next = eye
+        flipped_eye.next = eye
         if back:
             near.next = ~upper
             far.next = ~lower
-            turned_eye.next = ~eye
+            flipped_eye.next = ~eye
 
     @always_comb
     def measure():
-        to_near.next = near - turned_eye
-        to_far.next = far - turned_eye
+        to_near.next = near - flipped_eye
+        to_far.next = far - flipped_eye
 
     @always_comb
     def look_ahead():

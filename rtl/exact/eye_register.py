@@ -101,7 +101,7 @@ def eye_register(
             mirror.word.next = left
 
     @always_comb
-    def turn():
+    def flip_signs():
         dx.next = initial_signs.dx != flipped_x
         dy.next = initial_signs.dy != flipped_y
         dz.next = initial_signs.dz != flipped_z

@@ -23,7 +23,7 @@ def hit_component(eye, back, slope, distance, e, component):
     divisor = signed(slope_bits + 1)
     position = signed(len(eye) + slope_bits + 1)
     way_bits = max(len(distance) + slope_bits, bits)
-    way, turned_way = unsigned(way_bits), unsigned(way_bits)
+    way, flipped_way = unsigned(way_bits), unsigned(way_bits)
     from_eye, along, total = (unsigned(bits + 1) for _ in range(3))
 
     @always_comb
@@ -37,15 +37,15 @@ def hit_component(eye, back, slope, distance, e, component):
 
     @always_comb
     def turn_way():
-        turned_way.next = way
+        flipped_way.next = way
         if back:
-            turned_way.next = ~way
+            flipped_way.next = ~way
 
     # An extra lowest bit carries in the 1 that completes the two's complement.
     @always_comb
     def add_carry():
         from_eye.next = concat(position[bits:], True)
-        along.next = concat(turned_way[bits:], back)
+        along.next = concat(flipped_way[bits:], back)
 
     @always_comb
     def add():

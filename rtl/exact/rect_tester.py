@@ -49,7 +49,7 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
     slope_bits, eye_bits = len(slope.dx), len(eye.x)
     coordinate_bits, distance_bits = len(rect.position) + 1, eye_bits - 1
 
-    eye_a, eye_u, eye_v, turned_eye = (signed(eye_bits) for _ in range(4))
+    eye_a, eye_u, eye_v, flipped_eye = (signed(eye_bits) for _ in range(4))
     e, slope_u, slope_v = (unsigned(slope_bits) for _ in range(3))
     back, back_u, back_v, met = (bit() for _ in range(4))
     mirror_on_x, mirror_on_y, mirror_on_z, mirror_on_a, mirror_on_u, mirror_on_v = (bit() for _ in range(6))
@@ -98,16 +98,16 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
         position.next = rect.position
 
     @always_comb
-    def turn():
+    def complement():
         plane.next = position
-        turned_eye.next = eye_a
+        flipped_eye.next = eye_a
         if back:
             plane.next = ~position
-            turned_eye.next = ~eye_a
+            flipped_eye.next = ~eye_a
 
     @always_comb
     def measure():
-        n.next = plane - turned_eye
+        n.next = plane - flipped_eye
 
     # The plane is ahead of the eye and not parallel to the ray, and no far bound is behind the eye.
     @always_comb

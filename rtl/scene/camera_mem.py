@@ -31,9 +31,9 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
     shadows, lives = ([Signal(intbv(register.reset)[WORD_BITS:]) for register in registers] for _ in range(2))
     whole = camera.joined(
         **{
-            (field if name == "camera" else f"{name}_{field}"): live(place.lsb + place.width, place.lsb)
+            (field if name == "camera" else f"{name}_{field}"): live(bits.lsb + bits.width, bits.lsb)
             for name, register, live in zip(names, registers, lives, strict=True)
-            for field, place in register.fields.items()
+            for field, bits in register.fields.items()
         }
     )
 

@@ -9,16 +9,16 @@ from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.common.widths import WORD_BITS, index_bits
 from raycaster.rtl.scene.rect_slot import rect_slot
 from raycaster.rtl.scene.rect_sorter import rect_sorter
-from raycaster.rtl.scene.written_rect import CORNER, PLACE_BITS, PLACES, Copies, implemented_bits, written_of
+from raycaster.rtl.scene.written_rect import BANK_BITS, BANKS, CORNER, Copies, implemented_bits, written_of
 
 
 @block
 def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configuration):
     """Hold `config.rectangles` slots of rectangles, and present the live rectangle that the engine fetches.
 
-    One memory holds the shadow as written. Another holds the rectangles in the engine's form, in three places per slot:
-    enough for the shadow, pending and live copy. A cycle after a write, the rectangle is sorted into a place that holds
-    neither the pending nor the live copy; a commit and StartScreen only reassign places to copies. Reset clears neither
+    One memory holds the shadow as written. Another holds the rectangles in the engine's form, in three banks per slot:
+    enough for the shadow, pending and live copy. A cycle after a write, the rectangle is sorted into a bank that holds
+    neither the pending nor the live copy; a commit and StartScreen only reassign banks to copies. Reset clears neither
     memory: a slot that has not been written since reads 0, and is not usable.
 
     Args:
@@ -56,16 +56,16 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     all_copies = [Copies() for _ in range(count)]
     copies_words = [copies.word for copies in all_copies]
     latest_copies, read_copies = Copies(), Copies()
-    next_live, place = (unsigned(PLACE_BITS) for _ in range(2))
+    next_live, bank = (unsigned(BANK_BITS) for _ in range(2))
     kept_0, kept_1 = bit(), bit()
 
     sorted_rect = rect_of(config)
-    places = [unsigned(len(sorted_rect.word)) for _ in range(PLACES << index_width)]
-    write_address, read_address = (unsigned(PLACE_BITS + index_width) for _ in range(2))
+    banks = [unsigned(len(sorted_rect.word)) for _ in range(BANKS << index_width)]
+    write_address, read_address = (unsigned(BANK_BITS + index_width) for _ in range(2))
 
     slots = [
         rect_slot(
-            clk, reset, bus, storing, latest_index, numbers[i], place=place, enable=latest.enable, flat=flat,
+            clk, reset, bus, storing, latest_index, numbers[i], bank=bank, enable=latest.enable, flat=flat,
             copies=all_copies[i], usable=usables[i], bad=bads[i],
         )
         for i in range(count)
@@ -175,7 +175,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     def find_copies():
         latest_copies.word.next = copies_words[latest_index]
 
-    # The live place after this cycle. No commit comes while a rectangle is stored.
+    # The live bank after this cycle. No commit comes while a rectangle is stored.
     @always_comb
     def look_ahead():
         next_live.next = latest_copies.live
@@ -189,21 +189,21 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
 
     @always_comb
     def choose_place():
-        place.next = 0
+        bank.next = 0
         if kept_0 and kept_1:
-            place.next = 2
+            bank.next = 2
         elif kept_0:
-            place.next = 1
+            bank.next = 1
 
     @always_comb
     def address():
-        write_address.next = concat(place, latest_index)
+        write_address.next = concat(bank, latest_index)
         read_address.next = concat(read_copies.live, rects.index)
 
     @always(clk.posedge)
     def store_sorted():
         if storing:
-            places[write_address].next = sorted_rect.word
+            banks[write_address].next = sorted_rect.word
 
     @always_comb
     def show_slots():
@@ -219,7 +219,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
         @always(clk.posedge)
         def present():
             if rects.fetch:
-                rects.rect.word.next = places[read_address]
+                rects.rect.word.next = banks[read_address]
 
     else:
         fetched = rect_of(config)
@@ -227,7 +227,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
         @always(clk.posedge)
         def fetch():
             if rects.fetch:
-                fetched.word.next = places[read_address]
+                fetched.word.next = banks[read_address]
 
         @always(clk.posedge)
         def present():

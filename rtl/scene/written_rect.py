@@ -56,14 +56,14 @@ def implemented_bits(config: Configuration) -> int:
     return written_of(config).pack(words)
 
 
-PLACES = 3
-"""Places of a slot, for its shadow, pending and live copy."""
+BANKS = 3
+"""Banks of a slot, for its shadow, pending and live copy."""
 
-PLACE_BITS = bits_for(PLACES)
+BANK_BITS = bits_for(BANKS)
 
 
 class Copies(Record):
-    """The places of a slot's copies."""
+    """The banks of a slot's copies."""
 
     def __init__(self):
-        super().__init__(dict.fromkeys(("shadow", "pending", "live"), PLACE_BITS))
+        super().__init__(dict.fromkeys(("shadow", "pending", "live"), BANK_BITS))

@@ -48,7 +48,7 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
     sequencer = ray_sequencer(
         clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, picture=picture, rects=rects, steps=steps,
         in_flight=in_flight, fate=fate, shadow_pass=ShadowPass(), early_out=early_out, done=done,
-        slot_cycles=config.divider_steps, config=config,
+        rect_cycles=config.divider_steps, config=config,
     )  # fmt: skip
 
     @always_comb

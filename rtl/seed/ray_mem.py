@@ -23,7 +23,7 @@ def ray_mem(clk, steps, found_axis, found_point, ray, reflected):
     dx, dy, dz = bit(), bit(), bit()
 
     @always_comb
-    def turn():
+    def reflect():
         dx.next = ray.dx != (found_axis == 0)
         dy.next = ray.dy != (found_axis == 1)
         dz.next = ray.dz != (found_axis == 2)

@@ -59,7 +59,7 @@ async def disabled_rectangles_cost_nothing(bench: HierarchyObject) -> None:
     await bus.commit(reflections=reflections)
     await harness.expect(few, reflections, "every third rectangle")
     few_cycles = await bus.read("cycles")
-    saved = (len(scene.rect) - len(few.rect)) * (reflections + 1) * configuration.slot_cycles
+    saved = (len(scene.rect) - len(few.rect)) * (reflections + 1) * configuration.rect_cycles
     fallen = all_cycles["group"] - few_cycles["group"]
     assert 0 <= fallen <= saved if configuration.culling else fallen == saved, (all_cycles, few_cycles)
     assert (few_cycles["row"] < all_cycles["row"]) == (saved > 0)

@@ -29,8 +29,8 @@ from raycaster.rtl.common.records import (
     Pixel,
     Rect,
     Reflector,
+    RoomImage,
     Signs,
-    Turn,
     Walk,
     rect_of,
 )
@@ -119,11 +119,11 @@ class FoldAlone(Alone):
 
     def blocks(self) -> Iterator[Any]:
         """Elaborate the fold and both testers."""
-        distance, turn, widths = self.coordinate + 1, self.coordinate + 2, self.facts()
+        distance, shift, widths = self.coordinate + 1, self.coordinate + 2, self.facts()
         product = widths["WALK_BITS"]
-        fold = Fold(widths["FOLD_BITS"], product, turn, distance)
+        fold = Fold(widths["FOLD_BITS"], product, shift, distance)
         yield ray_fold(
-            bit(), before=Turn(turn), last=Reflector(distance), slope=Direction(self.slope + 1), fold=fold
+            bit(), before=RoomImage(shift), last=Reflector(distance), slope=Direction(self.slope + 1), fold=fold
         )  # fmt: skip
         for tester in (ray_tester, partial(fold_tester, fold=fold)):
             yield tester(

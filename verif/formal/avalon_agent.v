@@ -277,8 +277,8 @@ end
 
 // The memories of rect_mem are registers in this model.
 (* hierconn *) wire [95:0] \rects.shadow_words[0] , \rects.shadow_words[1] ;
-(* hierconn *) wire [RECT_BITS-1:0] \rects.places[0] , \rects.places[1] , \rects.places[2] , \rects.places[3] ,
-    \rects.places[4] , \rects.places[5] ;
+(* hierconn *) wire [RECT_BITS-1:0] \rects.banks[0] , \rects.banks[1] , \rects.banks[2] , \rects.banks[3] ,
+    \rects.banks[4] , \rects.banks[5] ;
 (* hierconn *) wire [1:0] \rects.rect_slot_0_i.shadow , \rects.rect_slot_1_i.shadow ,
     \rects.rect_slot_0_i.pending , \rects.rect_slot_1_i.pending , \rects.rect_slot_0_i.live ,
     \rects.rect_slot_1_i.live ;
@@ -294,8 +294,8 @@ wire [5:0] its_places = watched_slot
     : {\rects.rect_slot_0_i.shadow , \rects.rect_slot_0_i.pending , \rects.rect_slot_0_i.live };
 wire [1:0] its_shadow = its_places[5:4], its_pending = its_places[3:2], its_live = its_places[1:0];
 wire [2:0] right = watched_slot
-    ? {\rects.places[5] == result, \rects.places[3] == result, \rects.places[1] == result}
-    : {\rects.places[4] == result, \rects.places[2] == result, \rects.places[0] == result};
+    ? {\rects.banks[5] == result, \rects.banks[3] == result, \rects.banks[1] == result}
+    : {\rects.banks[4] == result, \rects.banks[2] == result, \rects.banks[0] == result};
 wire stores_0 = \rects.storing && !\rects.latest_index , stores_1 = \rects.storing && \rects.latest_index ;
 wire stores_it = watched_slot ? stores_1 : stores_0;
 always @* if (known) begin

@@ -23,23 +23,23 @@
 // [faults]
 // "beam-vga240-s2-u1-r2-m1-c8 straight" = ["bound_tester.low_edge as twice_low",
 //   "bound_tester.twice_high signed-short", "ray_tester.ahead 1", "ray_tester.back_1 as back"]
-// "beam-vga240-s2-u1-r2-m1-c8 folded" = ["fold_tester.folded_p[18] 0", "fold_tester.turned_way_p increased",
-//   "fold_tester.seen_distance edge", "fold_tester.before_border_2 inverted", "fold_tester.met_2 1"]
-// "beam-vga180-s6-u2-r2-m1-c8 folded" = ["fold_tester.seen_turn 0", "fold_tester.folded_q as folded_p",
+// "beam-vga240-s2-u1-r2-m1-c8 folded" = ["fold_tester.folded_p[18] 0", "fold_tester.flipped_way_p increased",
+//   "fold_tester.plane_fold_distance edge", "fold_tester.before_border_2 inverted", "fold_tester.met_2 1"]
+// "beam-vga180-s6-u2-r2-m1-c8 folded" = ["fold_tester.plane_fold_shift 0", "fold_tester.folded_q as folded_p",
 //   "fold_tester.e as size_a"]
 
 module beam_tester_products #(
     parameter FOLDED = 0, parameter STAGED = 0, parameter TURN = 0, parameter PATTERNS = 0,
     parameter COORDINATE_BITS = 9, parameter LOOK_BITS = 24, parameter SLOPE_BITS = 9, parameter STEEPEST = 320,
-    parameter REFLECTIONS = 1, parameter WALK_BITS = 19, parameter TURN_BITS = 11, parameter FOLD_BITS = 21,
+    parameter REFLECTIONS = 1, parameter WALK_BITS = 19, parameter SHIFT_BITS = 11, parameter FOLD_BITS = 21,
     parameter NUMERATOR_BITS = 10, parameter INDEX_BITS = 1, parameter VIEW_DISTANCE = 200
 ) (
-    input clk, input step, input signed [TURN_BITS:0] mirrored_x, input signed [TURN_BITS:0] mirrored_y,
-    input signed [TURN_BITS:0] mirrored_z, input [2:0] any_back, input [2:0] met, input [1:0] mirror_axis,
+    input clk, input step, input signed [SHIFT_BITS:0] mirrored_x, input signed [SHIFT_BITS:0] mirrored_y,
+    input signed [SHIFT_BITS:0] mirrored_z, input [2:0] any_back, input [2:0] met, input [1:0] mirror_axis,
     input [COORDINATE_BITS-1:0] mirror, input signed [SLOPE_BITS:0] any_dx, input signed [SLOPE_BITS:0] dy,
     input signed [SLOPE_BITS:0] any_dz, input [6*FOLD_BITS+3*WALK_BITS-1:0] any_fold
 );
-localparam LAST = (1 << COORDINATE_BITS) - 1, WIDE = TURN_BITS + 3, DISTANCE_BITS = COORDINATE_BITS + 1;
+localparam LAST = (1 << COORDINATE_BITS) - 1, WIDE = SHIFT_BITS + 3, DISTANCE_BITS = COORDINATE_BITS + 1;
 localparam SUM = FOLD_BITS + 3, MIRRORS = FOLDED ? REFLECTIONS : 0;
 
 (* anyconst *) reg usable;
@@ -80,7 +80,7 @@ wire signed [WIDE-1:0] eye_x = FOLDED ? mirrored_x : camera_x, eye_y = FOLDED ? 
 wire signed [WIDE-1:0] eye_z = FOLDED ? mirrored_z : camera_z;
 wire signed [WIDE-1:0] t_x = eye_x - camera_x, t_y = eye_y - camera_y, t_z = eye_z - camera_z;
 function in_reach(input signed [WIDE-1:0] moved, input signed [WIDE-1:0] place);
-    in_reach = moved >= -(1 << TURN_BITS - 1) && moved < 1 << TURN_BITS - 1 && place >= -LAST * MIRRORS
+    in_reach = moved >= -(1 << SHIFT_BITS - 1) && moved < 1 << SHIFT_BITS - 1 && place >= -LAST * MIRRORS
         && place <= LAST * (MIRRORS + 1);
 endfunction
 always @* begin
@@ -102,7 +102,7 @@ wire signed [WIDE-1:0] low_q = on_z ? low_0 : low_1, high_q = on_z ? high_0 : hi
 // Distances from the camera and their products with D, in the design's widths.
 wire signed [WIDE-1:0] wide_distance = k - camera_a;
 wire signed [DISTANCE_BITS-1:0] distance = wide_distance;
-wire signed [TURN_BITS-1:0] t_a = eye_a - camera_a;
+wire signed [SHIFT_BITS-1:0] t_a = eye_a - camera_a;
 wire signed [WIDE-1:0] wide_mirror = m - of_three(mirror_axis, camera_x, camera_y, camera_z);
 wire signed [DISTANCE_BITS-1:0] mirror_distance = wide_mirror;
 wire signed [WALK_BITS-1:0] border = mirror_distance * d_a;
@@ -114,7 +114,7 @@ wire signed [WIDE-1:0] n = k - eye_a;
 wire signed [FOLD_BITS-1:0] narrow_n = n;
 wire falls = d_a < 0, runs_back = falls != back_a, ahead = d_a != 0 && n != 0 && (n < 0) == runs_back;
 wire [1:0] within, ahead_of_mirror, in_mirror;
-localparam signed [63:0] FARTHEST = STEEP * LAST, FARTHEST_TURN = STEEP << TURN_BITS - 1;
+localparam signed [63:0] FARTHEST = STEEP * LAST, FARTHEST_SHIFT = STEEP << SHIFT_BITS - 1;
 generate
     genvar i;
     for (i = 0; i < 2; i = i + 1) begin: sides
@@ -124,7 +124,7 @@ generate
         wire turned = i ? back_q : back_p, differ = back_a != turned, clips = i ? mirror_on_q : mirror_on_p;
         wire signed [WIDE-1:0] wide_low = low - camera, wide_high = high - camera, wide_t = eye - camera;
         wire signed [DISTANCE_BITS-1:0] to_low = wide_low, to_high = wide_high;
-        wire signed [TURN_BITS-1:0] t = wide_t;
+        wire signed [SHIFT_BITS-1:0] t = wide_t;
         wire signed [WALK_BITS-1:0] way = distance * d, low_way = to_low * d_a, high_way = to_high * d_a;
         wire signed [FOLD_BITS-1:0] moved = t * d_a, moved_way = t_a * d;
         wire signed [SUM-1:0] w_moved = moved, w_moved_way = moved_way, w_way = way, w_low = low_way, w_high = high_way;
@@ -144,8 +144,8 @@ generate
             // product-in-range
             assume (w_way >= -FARTHEST && w_way <= FARTHEST && w_low >= -FARTHEST && w_low <= FARTHEST);
             assume (w_high >= -FARTHEST && w_high <= FARTHEST && w_border >= -FARTHEST && w_border <= FARTHEST);
-            assume (moved >= -FARTHEST_TURN && moved <= FARTHEST_TURN);
-            assume (moved_way >= -FARTHEST_TURN && moved_way <= FARTHEST_TURN);
+            assume (moved >= -FARTHEST_SHIFT && moved <= FARTHEST_SHIFT);
+            assume (moved_way >= -FARTHEST_SHIFT && moved_way <= FARTHEST_SHIFT);
             if (t == 0) assume (moved == 0);
             if (t_a == 0) assume (moved_way == 0);
             assume (w_way == w_from_eye + w_moved_way);  // next-column
@@ -217,7 +217,7 @@ assign {hit_valid, hit_at_mirror, numerator, denominator, rest} = hit;
 generate
     if (FOLDED) begin: design
         localparam FIELDS = 6 * FOLD_BITS + 3 * WALK_BITS;
-        wire [TURN_BITS-1:0] turn_x = t_x, turn_y = t_y, turn_z = t_z;
+        wire [SHIFT_BITS-1:0] shift_x = t_x, shift_y = t_y, shift_z = t_z;
         wire [FIELDS-1:0] fields;
         for (i = 0; i < 9; i = i + 1) begin: parts
             localparam BITS = i < 6 ? FOLD_BITS : WALK_BITS;
@@ -230,7 +230,7 @@ generate
             .facet_word(facet), .walk_word(walk), .signs_word(signs[3*SIGNS_AT +: 3]),
             .slope_dx(sizes_read[0 +: SLOPE_BITS]), .slope_dy(sizes_read[SLOPE_BITS +: SLOPE_BITS]),
             .slope_dz(sizes_read[2*SLOPE_BITS +: SLOPE_BITS]),
-            .fold_word({met[0], met[1], met[2], back[0], back[1], back[2], turn_x, turn_y, turn_z, mirror_down, fields,
+            .fold_word({met[0], met[1], met[2], back[0], back[1], back[2], shift_x, shift_y, shift_z, mirror_down, fields,
                 mirror_axis, mirror_distance}),
             .hit_word(hit)
         );
@@ -257,7 +257,7 @@ always @* if (age[HIT_AT] && steps[HIT_AT]) begin
 end
 localparam signed [63:0] HALF = 64'd1 << FOLD_BITS - 1;
 always @* assert (FARTHEST < 64'sd1 << WALK_BITS - 1);
-always @* assert (!FOLDED || FARTHEST + FARTHEST_TURN * (MIRRORS > 1 ? 2 : 1) < HALF);
+always @* assert (!FOLDED || FARTHEST + FARTHEST_SHIFT * (MIRRORS > 1 ? 2 : 1) < HALF);
 
 always @* cover (age[HIT_AT] && steps[HIT_AT] && hit_valid && (!FOLDED || hit_at_mirror));
 always @* cover (age[HIT_AT] && steps[HIT_AT] && hit_valid && !hit_at_mirror);

@@ -16,7 +16,7 @@
 // designs = ["exact one-unit turn materials patterns reflections=0,1,2,3,4", "exact one-unit patterns"]
 // [faults]
 // "exact-vga240-u1-r12-m1-c8-patterns" = ["divider_step.difference edge", "hit_component.along[0] 0",
-//   "cell_finder.point short", "hit_component.turned_way as way", "cell_finder.odd_v as digits_1"]
+//   "cell_finder.point short", "hit_component.flipped_way as way", "cell_finder.odd_v as digits_1"]
 
 module cell_products #(
     parameter COORDINATE_BITS = 9, parameter LOOK_BITS = 56, parameter SLOPE_BITS = 8, parameter EYE_BITS = 11

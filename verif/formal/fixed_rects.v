@@ -82,8 +82,8 @@ always @* if (running) assert ((usable & live) == live);
 
 // Invariants: the memory's contents, which are registers in this model.
 (* hierconn *) wire [95:0] \memory.shadow_words[0] , \memory.shadow_words[1] , \memory.shadow_words[2] ;
-(* hierconn *) wire [RECT_BITS-1:0] \memory.places[0] , \memory.places[1] , \memory.places[2] , \memory.places[4] ,
-    \memory.places[5] , \memory.places[6] , \memory.places[8] , \memory.places[9] , \memory.places[10] ;
+(* hierconn *) wire [RECT_BITS-1:0] \memory.banks[0] , \memory.banks[1] , \memory.banks[2] , \memory.banks[4] ,
+    \memory.banks[5] , \memory.banks[6] , \memory.banks[8] , \memory.banks[9] , \memory.banks[10] ;
 (* hierconn *) wire [1:0] \memory.rect_slot_0_i.shadow , \memory.rect_slot_1_i.shadow , \memory.rect_slot_2_i.shadow ,
     \memory.rect_slot_0_i.pending , \memory.rect_slot_1_i.pending , \memory.rect_slot_2_i.pending ,
     \memory.rect_slot_0_i.live , \memory.rect_slot_1_i.live , \memory.rect_slot_2_i.live ;
@@ -95,20 +95,20 @@ always @* if (running) assert ((usable & live) == live);
     \memory.rect_slot_1_i.pending_usable , \memory.rect_slot_2_i.pending_usable ;
 fixed_rects_slot #(RECT_BITS, SCENE_0, KEPT) slot_0 (
     running, wrote, \memory.storing && \memory.latest_index == 0, \memory.latest_word , written_0, shadow[0],
-    pending[0], live[0], \memory.written [0], \memory.shadow_words[0] , \memory.places[0] ,
-    \memory.places[4] , \memory.places[8] , \memory.rect_slot_0_i.shadow , \memory.rect_slot_0_i.pending ,
+    pending[0], live[0], \memory.written [0], \memory.shadow_words[0] , \memory.banks[0] ,
+    \memory.banks[4] , \memory.banks[8] , \memory.rect_slot_0_i.shadow , \memory.rect_slot_0_i.pending ,
     \memory.rect_slot_0_i.live , \memory.rect_slot_0_i.shadow_usable , \memory.rect_slot_0_i.pending_usable
 );
 fixed_rects_slot #(RECT_BITS, SCENE_1, KEPT) slot_1 (
     running, wrote, \memory.storing && \memory.latest_index == 1, \memory.latest_word , written_1, shadow[1],
-    pending[1], live[1], \memory.written [1], \memory.shadow_words[1] , \memory.places[1] ,
-    \memory.places[5] , \memory.places[9] , \memory.rect_slot_1_i.shadow , \memory.rect_slot_1_i.pending ,
+    pending[1], live[1], \memory.written [1], \memory.shadow_words[1] , \memory.banks[1] ,
+    \memory.banks[5] , \memory.banks[9] , \memory.rect_slot_1_i.shadow , \memory.rect_slot_1_i.pending ,
     \memory.rect_slot_1_i.live , \memory.rect_slot_1_i.shadow_usable , \memory.rect_slot_1_i.pending_usable
 );
 fixed_rects_slot #(RECT_BITS, SCENE_2, KEPT) slot_2 (
     running, wrote, \memory.storing && \memory.latest_index == 2, \memory.latest_word , written_2, shadow[2],
-    pending[2], live[2], \memory.written [2], \memory.shadow_words[2] , \memory.places[2] ,
-    \memory.places[6] , \memory.places[10] , \memory.rect_slot_2_i.shadow , \memory.rect_slot_2_i.pending ,
+    pending[2], live[2], \memory.written [2], \memory.shadow_words[2] , \memory.banks[2] ,
+    \memory.banks[6] , \memory.banks[10] , \memory.rect_slot_2_i.shadow , \memory.rect_slot_2_i.pending ,
     \memory.rect_slot_2_i.live , \memory.rect_slot_2_i.shadow_usable , \memory.rect_slot_2_i.pending_usable
 );
 

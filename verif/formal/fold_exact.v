@@ -22,7 +22,7 @@
 //   "alone=fold COORDINATE_BITS=3 SLOPE_BITS=2 VIEW_DISTANCE=3 MIRRORS=1",
 // ]
 // [faults]
-// "2 and 1 bits, 1 mirrors" = ["fold_tester.met_2 1", "fold_tester.seen_distance edge",
+// "2 and 1 bits, 1 mirrors" = ["fold_tester.met_2 1", "fold_tester.plane_fold_distance edge",
 //   "ray_fold.sum_xz_1 increased", "bound_tester.back_1 0", "bound_tester.low_edge as twice_low"]
 
 module fold_exact #(
@@ -31,7 +31,7 @@ module fold_exact #(
 ) (
     input clk
 );
-localparam TURN_BITS = COORDINATE_BITS + 2, WIDE = 2 * (COORDINATE_BITS + SLOPE_BITS + 4);
+localparam SHIFT_BITS = COORDINATE_BITS + 2, WIDE = 2 * (COORDINATE_BITS + SLOPE_BITS + 4);
 
 (* anyconst *) reg [COORDINATE_BITS-1:0] x, y, z, position, u_low, u_high, v_low, v_high, plane_1, plane_2;
 (* anyconst *) reg signed [SLOPE_BITS:0] any_dx, dy, dz;
@@ -91,7 +91,7 @@ wire signed [WIDE-1:0] walk_low_q = (low_q - camera_q) * slope_a, walk_high_q = 
 wire [1:0] last_axis = two ? axis_2 : axis_1;
 wire signed [WIDE-1:0] last_plane = two ? k_2 : k_1;
 wire signed [WIDE-1:0] last_distance = last_plane - of_three(last_axis, eye_x, eye_y, eye_z);
-localparam FOLD_WORD = 7 + 3 * TURN_BITS + 6 * FOLD_BITS + 3 * WALK_BITS + 2 + COORDINATE_BITS + 1;
+localparam FOLD_WORD = 7 + 3 * SHIFT_BITS + 6 * FOLD_BITS + 3 * WALK_BITS + 2 + COORDINATE_BITS + 1;
 wire [FOLD_WORD-1:0] fold;
 
 // Words of records, the first field in the highest bits: see `raycaster.rtl.common.records`. Before the second mirror the
@@ -100,7 +100,7 @@ wire [2:0] before = two ? 3'b100 >> axis_1 : 3'b000;
 wire signed [WIDE-1:0] moved_x = two ? x_1 - eye_x : 0, moved_y = two ? y_1 - eye_y : 0, moved_z = two ? z_1 - eye_z : 0;
 ray_fold folder (
     .clk(clk),
-    .before_word({before, before, moved_x[TURN_BITS-1:0], moved_y[TURN_BITS-1:0], moved_z[TURN_BITS-1:0]}),
+    .before_word({before, before, moved_x[SHIFT_BITS-1:0], moved_y[SHIFT_BITS-1:0], moved_z[SHIFT_BITS-1:0]}),
     .last_word({two && together, last_axis, last_distance[COORDINATE_BITS:0]}),
     .slope_x(dx), .slope_y(dy), .slope_z(dz), .fold_word(fold)
 );

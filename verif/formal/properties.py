@@ -103,7 +103,7 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
         name.upper(): lambda config, name=name: getattr(config, name)
         for name in (
             "rectangles", "reflections", "units", "pixels", "groups", "fraction_bits", "divider_bits", "colour_bits",
-            "culling", "turn", "materials", "patterns", "light", "slot_cycles", "divider_steps", "pass_latency",
+            "culling", "turn", "materials", "patterns", "light", "rect_cycles", "divider_steps", "pass_latency",
             "group_cycles",
         )
     },
@@ -132,7 +132,7 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
         name.upper(): getattr(widths, name)
         for name in (
             "index_bits", "unit_bits", "offset_bits", "row_bits", "pixel_bits", "position_bits", "factor_bits",
-            "eye_bits", "walk_bits", "wide_walk_bits", "turn_bits", "fold_bits", "share_bits",
+            "eye_bits", "walk_bits", "wide_walk_bits", "shift_bits", "fold_bits", "share_bits",
         )
     },
     "SLOPE_BITS": widths.exact_slope_bits,
@@ -140,7 +140,7 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
     "AIM_CYCLES": lambda config: AIM_CYCLES,
     "STEEPEST": widths.steepest_slope,
     "GROUP_BITS": lambda config: bits_for(config.groups),
-    "SLOT_BITS": lambda config: bits_for(config.slot_cycles),
+    "CYCLE_BITS": lambda config: bits_for(config.rect_cycles),
     "LOOK_BITS": lambda config: sum(look_fields(config.materials, config.patterns).values()),
     "CAMERA_BITS": lambda config: len(camera_of(config).word),
     "RECT_BITS": lambda config: len(rect_of(config).word),

@@ -3,7 +3,8 @@
 //
 // The tag of group_run.v replaces the position of the rectangle's plane, so that it can be followed to the z buffer.
 //
-// A slot is as long as a division, or one cycle in the exact engine, where rectangles follow each other in a pipeline.
+// A rectangle takes as long as a division, or one cycle in the exact engine, where rectangles follow each other in a
+// pipeline.
 //
 // Assumed besides group_run.v, as the units guarantee: if no ray is alive at the end of one pass, none is at the end of
 // the next one, which is not traced. Otherwise any ray may be alive, and run towards any plane, in any cycle.
@@ -26,7 +27,7 @@
 //   "exact tiny rectangles=2,3,4 reflections=0,1,2,3,4 culling=1", "exact one-unit", "exact one-unit reflections=4",
 // ]
 // [parameters]
-// STEPS = "SLOT_CYCLES"
+// STEPS = "RECT_CYCLES"
 // RESULT_LATENCY = "PASS_LATENCY"
 // RUN_BOUND = "GROUP_CYCLES - 2"  # done comes two cycles before the next group may start
 // [faults]
@@ -40,10 +41,10 @@
 //   "ray_control.early_out late", "ray_control.none_towards 1", "ray_control.none_towards 0"]
 // "tiny48-u2-r2-m1-f3t-d3-c8-k0" = ["ray_control.ray_sequencer_i.early_out as in_flight[1]"]
 // "exact-tiny48-u2-r2-m1-c8-k1" = ["exact_control.steps_write_z_buf as in_flight[1]",
-//   "exact_control.second_word as first_word", "ray_sequencer.passed 1", "rect_sequencer.slot 1"]
+//   "exact_control.second_word as first_word", "ray_sequencer.passed 1", "rect_sequencer.cycle 1"]
 
 module ray_order #(
-    parameter RECTANGLES = 2, parameter INDEX_BITS = 1, parameter STEPS = 9, parameter SLOT_BITS = 4,
+    parameter RECTANGLES = 2, parameter INDEX_BITS = 1, parameter STEPS = 9, parameter CYCLE_BITS = 4,
     parameter REFLECTIONS = 1, parameter REFLECTION_BITS = 3, parameter RESULT_LATENCY = 6, parameter RUN_BOUND = 50,
     parameter CULLING = 1
 ) (
@@ -189,20 +190,20 @@ generate
     end
 endgenerate
 
-// The timing of a ray: the end of the slots that have begun, and the end of the last one that did not end early, 0 if
+// The timing of a ray: the end of the tests that have begun, and the end of the last one that did not end early, 0 if
 // there was none. Slots follow each other, and the ray is blended when nothing is in flight any more.
-reg [TIME_BITS-1:0] slots_end, kept_end;
+reg [TIME_BITS-1:0] tests_end, kept_end;
 wire [TIME_BITS-1:0] kept_result = kept_end == 0 ? 0 : kept_end + RESULT_LATENCY - 1;
-wire [TIME_BITS-1:0] blend_at = kept_result > slots_end + 1 ? kept_result : slots_end + 1;
+wire [TIME_BITS-1:0] blend_at = kept_result > tests_end + 1 ? kept_result : tests_end + 1;
 always @(posedge clk) begin
-    if (reset_z_buf) slots_end <= 0;
-    else if (find_intersection) slots_end <= slots_end + STEPS;
-    else if (ended) slots_end <= slots_end - (STEPS - EARLY);
+    if (reset_z_buf) tests_end <= 0;
+    else if (find_intersection) tests_end <= tests_end + STEPS;
+    else if (ended) tests_end <= tests_end - (STEPS - EARLY);
     if (reset_z_buf) kept_end <= 0;
-    else if (DIVIDES ? starts[1] && !ended : find_intersection) kept_end <= DIVIDES ? slots_end : slots_end + STEPS;
+    else if (DIVIDES ? starts[1] && !ended : find_intersection) kept_end <= DIVIDES ? tests_end : tests_end + STEPS;
 end
 always @* if (known && started && tracing) begin
-    if (find_intersection) assert (place == slots_end);
+    if (find_intersection) assert (place == tests_end);
     assert (add_colour == (place == blend_at));
 end
 
@@ -222,10 +223,10 @@ always @* if (known && started) begin
 end
 
 // Counters in range.
-(* hierconn *) wire [SLOT_BITS-1:0] \engine.dut.ray_sequencer_i.rect_sequencer_i.slot ;
+(* hierconn *) wire [CYCLE_BITS-1:0] \engine.dut.ray_sequencer_i.rect_sequencer_i.cycle ;
 (* hierconn *) wire [REFLECTION_BITS-1:0] \engine.dut.ray_sequencer_i.bounce ;
 always @* if (known && tracing) begin
-    assert (\engine.dut.ray_sequencer_i.rect_sequencer_i.slot < STEPS);
+    assert (\engine.dut.ray_sequencer_i.rect_sequencer_i.cycle < STEPS);
     assert (\engine.dut.ray_sequencer_i.bounce <= reflections);
 end
 
@@ -240,15 +241,15 @@ end
 (* hierconn *) wire [TRAVEL-1:0] \engine.dut.in_flight ;
 localparam IDLE = 0, GENERATE = 1, TRACE = 2, BLEND = 3, DONE = 4;
 wire [2:0] state = \engine.dut.ray_sequencer_i.state ;
-wire [SLOT_BITS-1:0] slot = \engine.dut.ray_sequencer_i.rect_sequencer_i.slot ;
+wire [CYCLE_BITS-1:0] cycle = \engine.dut.ray_sequencer_i.rect_sequencer_i.cycle ;
 wire fetched = \engine.dut.ray_sequencer_i.rect_sequencer_i.fetched ;
 wire [RECTANGLES-1:0] waiting = \engine.dut.ray_sequencer_i.rect_sequencer_i.waiting ;
 wire [RECTANGLES-1:0] lowest_waiting = waiting & -waiting;
 wire [RECTANGLES-1:0] offered = {{RECTANGLES-1{1'b0}}, \engine.dut.ray_sequencer_i.rect_sequencer_i.offered } << \engine.dut.ray_sequencer_i.rect_sequencer_i.upcoming ;
 wire [RECTANGLES-1:0] left = offered | waiting;
-wire starting = state == TRACE && fetched && slot == 0;
+wire starting = state == TRACE && fetched && cycle == 0;
 wire [RECTANGLES-1:0] taken = starting ? visited | tagged : visited;
-wire [TIME_BITS-1:0] whole_slots = count(visited) * STEPS;
+wire [TIME_BITS-1:0] whole_tests = count(visited) * STEPS;
 always @* if (known) begin
     assert (\engine.dut.in_flight == starts && \engine.dut.ray_sequencer_i.early_out == ended);
     if (!started) assert (cycles == 0 && state == IDLE && starts == 0 && !tracing && !lost);
@@ -271,23 +272,23 @@ always @* if (known) begin
     if (tracing) begin
         assert ((state == BLEND) == (place == blend_at));
         assert (place <= blend_at);
-        assert (slots_end <= whole_slots && (some_early || slots_end == whole_slots));
-        assert (kept_end <= slots_end && (some_early || kept_end == slots_end || fetched));
+        assert (tests_end <= whole_tests && (some_early || tests_end == whole_tests));
+        assert (kept_end <= tests_end && (some_early || kept_end == tests_end || fetched));
     end
     if (state == TRACE) begin
         if (fetched) begin
             assert ((taken | left) == wanted && (taken & left) == 0);
             assert (left == 0 || taken < offered);
             assert (tag < RECTANGLES);
-            if (slot == 0) assert ((wanted & tagged) != 0 && visited < tagged);
+            if (cycle == 0) assert ((wanted & tagged) != 0 && visited < tagged);
             else assert (visited != 0);
-            assert (place == (slot == 0 ? slots_end : slots_end - STEPS + slot));
+            assert (place == (cycle == 0 ? tests_end : tests_end - STEPS + cycle));
         end
         else begin
-            assert (visited == wanted && left == (place == slots_end ? 0 : usable));
-            assert (place >= slots_end);
+            assert (visited == wanted && left == (place == tests_end ? 0 : usable));
+            assert (place >= tests_end);
         end
-        if (!fetched || slot == 0) assert ((starts & ((1 << (STEPS - 1)) - 1)) == 0);
+        if (!fetched || cycle == 0) assert ((starts & ((1 << (STEPS - 1)) - 1)) == 0);
     end
 end
 genvar age;
@@ -296,7 +297,7 @@ generate
         always @* if (known && starts[age]) begin
             assert (place > age && ((starts << (STEPS - 1)) >> age & ((1 << (STEPS - 1)) - 1)) == 0);
             if (!DIVIDES) assert ((age == 0 ? first_tag : age == 1 ? second_tag : offered_tag) == tags[age]);
-            else if (age < 2) assert (fetched && slot == age + 1 && first_tag == tags[age]);
+            else if (age < 2) assert (fetched && cycle == age + 1 && first_tag == tags[age]);
             else if (age < 2 + STEPS) assert (second_tag == tags[age] && since_load == age - 1);
             else assert (offered_tag == tags[age]);
             if (age >= 2 || !DIVIDES) assert (kept_end != 0 && kept_end + age + 1 >= place + STEPS);
@@ -305,8 +306,8 @@ generate
         always @* if (known && state == TRACE && kept_end != 0 && kept_end + age + 1 == place + STEPS)
             assert ((age >= 2 || !DIVIDES) && starts[age]);
     end
-    for (age = 1; age < STEPS; age = age + 1) begin: slots
-        always @* if (known && state == TRACE && fetched && slot == age)
+    for (age = 1; age < STEPS; age = age + 1) begin: cycles
+        always @* if (known && state == TRACE && fetched && cycle == age)
             assert (starts[age-1] && (starts & ((1 << (age - 1)) - 1)) == 0);
     end
 endgenerate

@@ -132,7 +132,7 @@ end
 (* hierconn *) wire [2:0] \dut.ray_sequencer_i.state ;
 (* hierconn *) wire \dut.ray_sequencer_i.rect_sequencer_i.fetched ;
 (* hierconn *) wire \dut.ray_sequencer_i.rect_sequencer_i.offered ;
-(* hierconn *) wire \dut.ray_sequencer_i.rect_sequencer_i.slot ;
+(* hierconn *) wire \dut.ray_sequencer_i.rect_sequencer_i.cycle ;
 (* hierconn *) wire [INDEX_BITS-1:0] \dut.ray_sequencer_i.rect_sequencer_i.upcoming ;
 (* hierconn *) wire [RECTANGLES-1:0] \dut.ray_sequencer_i.rect_sequencer_i.waiting ;
 (* hierconn *) wire [TRAVEL-1:0] \dut.in_flight ;
@@ -156,7 +156,7 @@ reg [TIME_BITS-1:0] time_of_light;
 always @(posedge clk) time_of_light <= aim[AIM_CYCLES-1] ? time_in_ray + 1 : time_of_light;
 always @* if (known) begin
     assert (\dut.in_flight == starts);
-    assert (\dut.ray_sequencer_i.rect_sequencer_i.slot == 0 || !started || !fetched);
+    assert (\dut.ray_sequencer_i.rect_sequencer_i.cycle == 0 || !started || !fetched);
     if (!started) assert (cycles == 0 && state == IDLE && light == WAITING && starts == 0 && pass == NONE && !lost);
     else assert (state != IDLE && state <= DONE && (state == GENERATE ? cycles == 1 : cycles > 1));
     if (started) begin

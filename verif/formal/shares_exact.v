@@ -96,8 +96,8 @@ function of_two_mirrors(input [SHARE_BITS-1:0] number);
 endfunction
 (* hierconn *) wire [SHARE_BITS-1:0] \design.dut.colour_share_i.weight ;
 (* hierconn *) wire [SHARE_BITS-1:0] \design.dut.colour_share_i.share ;
-(* hierconn *) wire [7:0] \design.dut.colour_sum_0_i.seen , \design.dut.colour_sum_1_i.seen ;
-(* hierconn *) wire [7:0] \design.dut.colour_sum_2_i.seen ;
+(* hierconn *) wire [7:0] \design.dut.colour_sum_0_i.channel , \design.dut.colour_sum_1_i.channel ;
+(* hierconn *) wire [7:0] \design.dut.colour_sum_2_i.channel ;
 (* hierconn *) wire [SUM_BITS-1:0] \design.dut.colour_sum_0_i.total ;
 (* hierconn *) wire [SUM_BITS-1:0] \design.dut.colour_sum_1_i.total ;
 (* hierconn *) wire [SUM_BITS-1:0] \design.dut.colour_sum_2_i.total ;
@@ -105,7 +105,7 @@ wire [3*SUM_BITS-1:0] totals = {
     \design.dut.colour_sum_0_i.total , \design.dut.colour_sum_1_i.total , \design.dut.colour_sum_2_i.total
 };
 wire [23:0] seen = {
-    \design.dut.colour_sum_0_i.seen , \design.dut.colour_sum_1_i.seen , \design.dut.colour_sum_2_i.seen
+    \design.dut.colour_sum_0_i.channel , \design.dut.colour_sum_1_i.channel , \design.dut.colour_sum_2_i.channel
 };
 always @* if (add) begin
     assert (\design.dut.colour_share_i.share == weight - passed);

@@ -21,7 +21,7 @@
 // ]
 // [faults]
 // "exact-vga240-u1-r12-m1-c8" = ["rect_tester.extent_tester_0_i.slope as slope_v", "extent_tester.way_to_far short",
-//   "extent_tester.way_to_near_2 edge", "extent_tester.turned_eye increased", "extent_tester.to_far_1 short"]
+//   "extent_tester.way_to_near_2 edge", "extent_tester.flipped_eye increased", "extent_tester.to_far_1 short"]
 // "exact-vga240-u1-r12-m2-c8-turn" = ["rect_tester.by_axis_12_i.on_y as mirror_met_x",
 //   "extent_tester.to_near_1 edge"]
 

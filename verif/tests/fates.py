@@ -18,15 +18,15 @@ from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.common.interfaces import GroupFate, ShadowPass
 from raycaster.rtl.common.records import rect_of, surface_of
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
-from raycaster.verif.expected import EARLY_OUT_AT, TraceCycle, ends_early, slot_length, sorted_rect, trace_cycles
+from raycaster.verif.expected import EARLY_OUT_AT, TraceCycle, ends_early, rect_cycles, sorted_rect, trace_cycles
 
 
 def control_leaf(function: Callable, config: Configuration, directory: Path) -> Leaf:
     """Build a leaf of ray_control, exact_control, or the ray_sequencer in either of them."""
     ports: dict[str, Any] = {"fate": lambda: GroupFate(config)}
     if function is ray_sequencer:
-        write_at = slot_length(config) + 3 if config.facts.divides else 2
-        ports |= {"in_flight": write_at + 1, "shadow_pass": ShadowPass, "slot_cycles": lambda: slot_length(config)}
+        write_at = rect_cycles(config) + 3 if config.facts.divides else 2
+        ports |= {"in_flight": write_at + 1, "shadow_pass": ShadowPass, "rect_cycles": lambda: rect_cycles(config)}
     else:
         ports["offered"] = partial(rect_of if config.facts.divides else surface_of, config)
     return leaf_of(function, directory, config, **ports)

@@ -159,8 +159,8 @@ def test_timing_diagrams_match_the_configuration():
     }
     config = timing.CONFIGURATION
     assert cycles["renderer_and_ray_unit", "done", "done"] == config.group_cycles
-    assert cycles["ray_control_and_ray_unit", "find_intersection", "find_intersection"] == config.slot_cycles
-    a_ray = config.rectangles * config.slot_cycles + config.pass_latency
+    assert cycles["ray_control_and_ray_unit", "find_intersection", "find_intersection"] == config.rect_cycles
+    a_ray = config.rectangles * config.rect_cycles + config.pass_latency
     assert cycles["ray_control_and_ray_unit", "add_colour", "add_colour"] == a_ray
     assert cycles["video_and_counters", "start_screen", "start_row"] == config.screen_geometry.row_cycles
 

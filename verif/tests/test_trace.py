@@ -127,7 +127,7 @@ FAULTS = {
         ("rect_sequencer", "offered <= candidates != 0", "offered <= 0"),
         ("ray_sequencer", "bounce == picture_reflections", "bounce == 0"),
         ("colour_sum", "total + weighted", "total - weighted"),
-        ("colour_combiner", "seen_word = found_colour", "seen_word = ~found_colour"),
+        ("colour_combiner", "ray_colour_word = found_colour", "ray_colour_word = ~found_colour"),
         ("line_buffer", "read_address = read_offset", "read_address = 1 + read_offset"),
         ("video_generator", "vga_g <= pixel_green", "vga_g <= pixel_red"),
     ],
@@ -143,7 +143,7 @@ FAULTS = {
         ("ray_tester", "valid = ", "valid = 0 && "),
         ("fold_tester", "valid = ", "valid = 0 && "),
         ("nearest_of_two", "second_product < first_product", "second_product > first_product"),
-        ("ray_fold", "turned = ", "turned = 1 + "),
+        ("ray_fold", "mirrored = ", "mirrored = 1 + "),
         ("colour_mean", "mean = ", "mean = 1 + "),
     ],
 }

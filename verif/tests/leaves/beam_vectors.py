@@ -182,7 +182,7 @@ def image_of(camera, slope, mirrors) -> dict[str, int]:
     met = met_last(camera, slope, mirrors)
     fields = by_axis("met_", (int(axis in met) for axis in range(3)))
     fields |= by_axis("back_", (sum(axis == mirror for mirror, _ in mirrors) % 2 for axis in range(3)))
-    return fields | by_axis("turn_", (int(there) - int(here) for there, here in zip(eye, camera, strict=True)))
+    return fields | by_axis("shift_", (int(there) - int(here) for there, here in zip(eye, camera, strict=True)))
 
 
 def folded(camera, slope, mirrors) -> dict[str, int]:

@@ -36,8 +36,8 @@ from raycaster.rtl.common.records import (
     fold_of,
     mirror_of,
     rect_of,
+    room_image_of,
     seen_of,
-    turn_of,
     walk_of,
     winner_of,
 )
@@ -68,7 +68,7 @@ PORTS: dict[str, Callable[[Configuration], object]] = {
     "slope": lambda config: Slope(exact_slope_bits(config)),
     "steps": lambda _: Steps(),
     "strobe": lambda _: unsigned(LANES),
-    "turn": turn_of,
+    "image": room_image_of,
     "vga": vga_of,
     "walk": walk_of,
     "winner": winner_of,

@@ -8,21 +8,21 @@ from raycaster.rtl.beam.cell_step import cell_step
 from raycaster.rtl.common.records import CellDivision
 
 
-@pytest.mark.parametrize("place", [8, 5, 3])
-def test_cell_step(place, tmp_path, random):
+@pytest.mark.parametrize("power", [8, 5, 3])
+def test_cell_step(power, tmp_path, random):
     """One bit of a quotient, and the remainder."""
     bits = 7
-    divisions = {"before": lambda: CellDivision(bits, place + 1), "after": lambda: CellDivision(bits, place)}
-    leaf = leaf_of(cell_step, tmp_path, **divisions, place=place)
+    divisions = {"before": lambda: CellDivision(bits, power + 1), "after": lambda: CellDivision(bits, power)}
+    leaf = leaf_of(cell_step, tmp_path, **divisions, power=power)
     stimulus, expected = [], []
     for _ in range(800):
         divisor = int(random.integers(1, 1 << bits))
-        edge = int(random.integers(3)) * (divisor << place) + int(random.integers(-1, 2))
-        rest = edge if random.random() < 0.5 else int(random.integers(divisor << place + 1))
-        rest = min(max(rest, 0), (divisor << place + 1) - 1)
+        edge = int(random.integers(3)) * (divisor << power) + int(random.integers(-1, 2))
+        rest = edge if random.random() < 0.5 else int(random.integers(divisor << power + 1))
+        rest = min(max(rest, 0), (divisor << power + 1) - 1)
         before = {"rest": rest, "divisor": divisor, "cell": random.integers(8), "odd": random.integers(2)}
         stimulus.append(named("before", before))
-        fits, left = divmod(rest, divisor << place)
-        odd = {"odd": fits} if 8 << before["cell"] == 1 << place else {}
+        fits, left = divmod(rest, divisor << power)
+        odd = {"odd": fits} if 8 << before["cell"] == 1 << power else {}
         expected.append(named("after", before | {"rest": left} | odd))
     check(leaf, stimulus, expected, latency=1)

@@ -10,16 +10,16 @@ from vectors import LAST, any_place, check, designs, leaf_of
 from raycaster.engines.beam import CELL_LATENCY
 from raycaster.hdl.signals import Signed
 from raycaster.rtl.beam.hit_cell import hit_cell
-from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, steepest_slope, turn_bits
+from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, shift_bits, steepest_slope
 
 
 @designs(beam_config(screen="tiny", patterns=True, turn=True, reflections=2))
 def test_hit_cell(config, tmp_path, random):
     """Cells of coordinates (E + T) +- D n / e within the world, many of them at an edge of a cell of their size."""
-    slope_bits, numerator_bits, turn_width = exact_slope_bits(config), eye_bits(config) - 1, turn_bits(config)
-    widths = {"turn": Signed(turn_width), "eye": 9, "slope": Signed(slope_bits + 1), "cell_size": 3}
+    slope_bits, numerator_bits, shift_width = exact_slope_bits(config), eye_bits(config) - 1, shift_bits(config)
+    widths = {"shift": Signed(shift_width), "eye": 9, "slope": Signed(slope_bits + 1), "cell_size": 3}
     leaf = leaf_of(hit_cell, tmp_path, **widths, numerator=numerator_bits, denominator=slope_bits)
-    far, steepest = (1 << turn_width - 1) - 1, steepest_slope(config)
+    far, steepest = (1 << shift_width - 1) - 1, steepest_slope(config)
     stimulus, expected = [{}], {}
     while len(stimulus) < 8000:
         turn, eye, back = int(random.integers(-far, far + 1)), any_place(random), int(random.integers(2))
@@ -34,7 +34,7 @@ def test_hit_cell(config, tmp_path, random):
         place = eye + turn + Fraction((-1 if back else 1) * slope * n, e)
         if not 0 <= place <= LAST or not n:
             continue
-        stimulus[-1] |= {"turn": turn, "eye": eye, "back": back, "numerator": n, "denominator": e, "cell_size": cell}
+        stimulus[-1] |= {"shift": turn, "eye": eye, "back": back, "numerator": n, "denominator": e, "cell_size": cell}
         expected[len(stimulus) - 1 + CELL_LATENCY - 1] = {"odd": int(place // (8 << cell)) % 2}
         stimulus.append({"slope": slope})
     check(leaf, [*stimulus, *[{}] * CELL_LATENCY], expected, settled=min(expected))

@@ -76,7 +76,7 @@ def test_hit_cells(config, tmp_path, random):
             cell, number = int(random.integers(6)), int(random.integers(config.rectangles))
             fields = {"valid": 1, "numerator": n, "denominator": e, "axis": axis, "cell": cell}
             stimulus[cycle] |= named("nearest", fields) | {"winner_valid": 1, "winner_index": number}
-            stimulus[cycle + 1] |= named("turn", image_of(camera, slope, mirrors)) | by_axis("camera_", camera)
+            stimulus[cycle + 1] |= named("image", image_of(camera, slope, mirrors)) | by_axis("camera_", camera)
             stimulus[cycle + CELL_SLOPE_AT] |= by_axis("slope_", slope)
             odd_u, odd_v = (int(coordinate // (8 << cell)) % 2 for coordinate in point)
             expected[cycle + latency] = {"sight_valid": 1, "sight_odd_u": odd_u, "sight_odd_v": odd_v,

@@ -8,7 +8,7 @@ from vectors import by_axis, check, designs, leaf_of, named
 from raycaster.engines.beam import FOLD_LATENCY
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.common.interfaces import Direction
-from raycaster.rtl.common.records import Reflector, turn_of
+from raycaster.rtl.common.records import Reflector, room_image_of
 from raycaster.rtl.common.widths import exact_slope_bits
 
 
@@ -26,7 +26,7 @@ from raycaster.rtl.common.widths import exact_slope_bits
 )
 def test_ray_fold(config, tmp_path, random):
     """One ray per cycle, at its last mirror; its slope comes a cycle later."""
-    inputs = {"before": lambda: turn_of(config), "slope": lambda: Direction(exact_slope_bits(config) + 1)}
+    inputs = {"before": lambda: room_image_of(config), "slope": lambda: Direction(exact_slope_bits(config) + 1)}
     leaf = leaf_of(ray_fold, tmp_path, config, **inputs, last=Reflector)
     rays = [ray[2:] for ray in beam_rays(random, config, 4000) if ray[-1]]
     stimulus = [{} for _ in range(len(rays) + FOLD_LATENCY + 1)]

@@ -17,7 +17,7 @@ from raycaster.rtl.engine.colour_sum import colour_sum
 def test_colour_sum(colour_bits, reflections, materials, tmp_path, random):
     """All shares that a pixel's rays may have; with many reflections, a random choice."""
     config = unit_config(reflections=reflections, colour_bits=colour_bits, materials=materials)
-    leaf = leaf_of(colour_sum, tmp_path, config, seen=CHANNEL_BITS, share=share_bits(config), blended=colour_bits)
+    leaf = leaf_of(colour_sum, tmp_path, config, channel=CHANNEL_BITS, share=share_bits(config), blended=colour_bits)
     idle = {"steps_reset_colour": 0, "steps_add_colour": 0}
     one = 1 << (share_bits(config) - 1)
     stimulus, expected = [], {}
@@ -27,8 +27,8 @@ def test_colour_sum(colour_bits, reflections, materials, tmp_path, random):
             for values in ([255] * len(shares), *random.integers(256, size=(8, len(shares))).tolist()):
                 stimulus.append({**idle, "steps_reset_colour": 1})
                 for share, value in zip(shares, values, strict=True):
-                    stimulus += [{**idle, "seen": random.integers(256)}] * int(random.integers(2))
-                    stimulus.append({**idle, "seen": value, "share": share * one, "steps_add_colour": 1})
+                    stimulus += [{**idle, "channel": random.integers(256)}] * int(random.integers(2))
+                    stimulus.append({**idle, "channel": value, "share": share * one, "steps_add_colour": 1})
                 total = sum(share * value for share, value in zip(shares, values, strict=True))
                 expected[len(stimulus)] = {"blended": int(total) >> CHANNEL_BITS - colour_bits}
                 stimulus.append(idle)

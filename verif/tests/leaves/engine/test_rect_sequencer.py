@@ -9,12 +9,12 @@ from raycaster.rtl.common.widths import index_bits
 from raycaster.rtl.engine.rect_sequencer import rect_sequencer
 
 
-@pytest.mark.parametrize("slot_cycles", [1, 3, 9])
+@pytest.mark.parametrize("rect_cycles", [1, 3, 9])
 @pytest.mark.parametrize("count", [1, 5, 12])
-def test_rect_sequencer(count, slot_cycles, tmp_path, random):
-    """All, some or single rectangles; some slots end early, and some sequences with a reset."""
+def test_rect_sequencer(count, rect_cycles, tmp_path, random):
+    """All, some or single rectangles; some tests end early, and some sequences with a reset."""
     config = exact_config(rectangles=count)
-    ports = {"wanted": count, "index": index_bits(config), "slot_cycles": lambda: slot_cycles}
+    ports = {"wanted": count, "index": index_bits(config), "rect_cycles": lambda: rect_cycles}
     leaf = leaf_of(rect_sequencer, tmp_path, config, **ports)
     stimulus, expected, on_port = [], [], {}
 
@@ -35,15 +35,15 @@ def test_rect_sequencer(count, slot_cycles, tmp_path, random):
         for _ in range(int(random.integers(1, 3))):
             drive(0, 0, mask)
         drive(0, 1, mask)
-        slots = []
+        tests = []
         for index in range(count):
             if mask >> index & 1:
-                # Some slots end early, in any of their cycles.
-                last = int(random.integers(slot_cycles)) if random.random() < 0.3 else slot_cycles - 1
-                ends = last < slot_cycles - 1
-                slots += [(index, cycle == 0, int(ends and cycle == last)) for cycle in range(last + 1)]
+                # Some tests end early, in any of their cycles.
+                last = int(random.integers(rect_cycles)) if random.random() < 0.3 else rect_cycles - 1
+                ends = last < rect_cycles - 1
+                tests += [(index, cycle == 0, int(ends and cycle == last)) for cycle in range(last + 1)]
         # Only a reset may come before the end.
-        for current, first, early_out in slots[: int(random.integers(len(slots) + 1))] if number % 5 == 4 else slots:
+        for current, first, early_out in tests[: int(random.integers(len(tests) + 1))] if number % 5 == 4 else tests:
             drive(0, 0, mask, current, first, early_out)
         if number % 5 != 4:
             drive(0, 0, mask)

@@ -42,7 +42,7 @@ def table_stimulus(random: np.random.Generator, table: Table, rectangles: int) -
         addresses = written[size * slot : size * (slot + 1)]
         idle = {"bus_write": 0, "bus_commit": 0, "bus_go_live": 0, "bus_mask": EVERY_BIT, "reset": 0}
         if random.random() < 0.25:
-            # The shadow, the pending and the live rectangle are each in one of three places.
+            # The shadow, the pending and the live rectangle are each in one of three banks.
             for _, data in zip(range(8), words, strict=False):
                 for address, word in zip(addresses, data, strict=False):
                     stimulus.append({**idle, "bus_write": 1, "bus_address": address, "bus_data": word})
@@ -66,7 +66,7 @@ def table_stimulus(random: np.random.Generator, table: Table, rectangles: int) -
 
 
 def fill_places(random: np.random.Generator, table: Table) -> list[dict[str, int]]:
-    """Return a reset and writes to all places of all slots, which make an unknown memory known."""
+    """Return a reset and writes to all banks of all slots, which make an unknown memory known."""
     idle = random_bus(random, [0]) | {"bus_write": 0, "bus_commit": 0, "bus_go_live": 0, "reset": 0}
     writes = [
         {**idle, "bus_write": 1, "bus_address": address, "bus_data": int(random.integers(1 << WORD_BITS))}

@@ -7,23 +7,23 @@ from vectors import check, leaf_of
 
 from raycaster.rtl.common.interfaces import SceneBus
 from raycaster.rtl.scene.rect_slot import rect_slot
-from raycaster.rtl.scene.written_rect import PLACE_BITS, PLACES, Copies
+from raycaster.rtl.scene.written_rect import BANK_BITS, BANKS, Copies
 from raycaster.sim.register_model import Word
 
 
 @pytest.mark.parametrize("number", [0, 3])
 def test_rect_slot(number, tmp_path, random):
-    """The place of each copy, and whether it is usable, after writes, commits and frames in any order."""
-    ports = {"bus": lambda: SceneBus(7), "copies": Copies, "index": 2, "number": 2, "place": PLACE_BITS}
+    """The bank of each copy, and whether it is usable, after writes, commits and frames in any order."""
+    ports = {"bus": lambda: SceneBus(7), "copies": Copies, "index": 2, "number": 2, "bank": BANK_BITS}
     leaf = leaf_of(rect_slot, tmp_path, **ports)
-    # Each copy is its place, with a bit above that says whether it is usable.
-    usable_bit = 1 << PLACE_BITS
+    # Each copy is its bank, with a bit above that says whether it is usable.
+    usable_bit = 1 << BANK_BITS
     stimulus, expected, model, bad = [], [], Word(EVERY_BIT), False
     for cycle in range(2 * CYCLES):
         inputs = {"reset": int(cycle == 0 or random.random() < 0.05)}
         inputs |= {name: int(random.random() < 0.3) for name in ("bus_commit", "bus_go_live")}
         inputs |= {"storing": int(random.random() < 0.4), "index": int(random.choice([number, random.integers(4)]))}
-        inputs |= {"number": number, "place": int(random.integers(PLACES))}
+        inputs |= {"number": number, "bank": int(random.integers(BANKS))}
         inputs |= {name: int(random.integers(2)) for name in ("enable", "flat")}
         stimulus.append(inputs)
         copies = {f"copies_{stage}": getattr(model, stage) % usable_bit for stage in ("shadow", "pending", "live")}
@@ -34,6 +34,6 @@ def test_rect_slot(number, tmp_path, random):
             model.reset()
             bad = False
         else:
-            model.clock({**inputs, "bus_write": 1, "bus_data": inputs["place"] | good, "bus_mask": EVERY_BIT}, storing)
+            model.clock({**inputs, "bus_write": 1, "bus_data": inputs["bank"] | good, "bus_mask": EVERY_BIT}, storing)
             bad = bool(inputs["enable"] and not inputs["flat"]) if storing else bad
     check(leaf, stimulus, expected, settled=1)

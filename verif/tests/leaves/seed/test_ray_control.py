@@ -22,5 +22,5 @@ from raycaster.rtl.seed.ray_control import ray_control
     ids=config_id,
 )  # fmt: skip
 def test_ray_control(config, tmp_path, random):
-    """Rows of any rectangles and fates, with every length of a slot."""
+    """Rows of any rectangles and fates, with every number of cycles per rectangle."""
     check_control(ray_control, config, tmp_path, random)

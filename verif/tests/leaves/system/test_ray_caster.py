@@ -17,7 +17,7 @@ from raycaster.golden.rays import primary_slopes
 from raycaster.rtl.common.widths import pixel_bits
 from raycaster.rtl.system.ray_caster import ray_caster
 from raycaster.scene import UNTURNED
-from raycaster.verif.expected import TraceCycle, slot_length, sorted_rect, trace_cycles
+from raycaster.verif.expected import TraceCycle, rect_cycles, sorted_rect, trace_cycles
 
 
 def place_after(config: Configuration, place: tuple[int, int]) -> tuple[int, int]:
@@ -40,7 +40,7 @@ def places_before(random: np.random.Generator, config: Configuration, place: tup
 def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int]) -> list[int]:
     """Return the rectangle that the memory shows in each cycle of a trace, in the cycle of done, and in the next.
 
-    The control fetches one for each slot and each pass, even if nobody waits for it; if none is left, the lowest.
+    The control fetches one for each test and each pass, even if nobody waits for it; if none is left, the lowest.
     """
     queue = [*usable, *[0] * len(cycles)]
     held, blends, indices = 0, 0, []
@@ -53,8 +53,8 @@ def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int
             held = 0
         blends = blends + 1 if cycle.steps["steps_add_colour"] else 0
         indices.append(held)
-    # A slot of one cycle is over in the cycle of done.
-    return [*indices, queue[blends - 1], queue[blends - (slot_length(config) > 1)]]
+    # A test of one cycle is over in the cycle of done.
+    return [*indices, queue[blends - 1], queue[blends - (rect_cycles(config) > 1)]]
 
 
 @pytest.mark.slow_sets(
