@@ -20,7 +20,7 @@ from raycaster.hdl.signals import bit, unsigned
 from raycaster.outcomes import table
 
 MODULE = """\
-from myhdl import Signal, always, always_comb, block, concat, instances, intbv
+from myhdl import Constant, Signal, always, always_comb, block, concat, instances, intbv
 
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, tied, unconnected, unsigned

@@ -8,28 +8,15 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from myhdl import ConcatSignal
 from pygments.lexers import SystemVerilogLexer
 from pygments.token import Keyword, Operator
 
+from raycaster.hdl import internals
 from raycaster.hdl.errors import UserError
-from raycaster.hdl.internals import (
-    Block,
-    Constant,
-    Process,
-    ShadowSignal,
-    SignalType,
-    SliceSignal,
-    analysed,
-    assigned,
-    bits_of,
-    operands_of,
-    set_name,
-    slices_of,
-    vhdl_keywords,
-)
+from raycaster.hdl.internals import Block, Constant, Process, ShadowSignal, SignalType, SliceSignal, bits_of
 from raycaster.hdl.lint import check_process
 from raycaster.hdl.records import Field, block_arguments, signals_in
 from raycaster.hdl.signals import Tied, Unconnected
@@ -104,8 +91,8 @@ class Contents:
         """Analyse a block.
 
         Raises:
-            UserError: a signal has no driver, two drivers or no reader; it has no name, no width, or the name of
-                another; a process indexes a list of slices; Verilog would compute something else.
+            UserError: a signal has no driver, two drivers or no reader; it has no variable, no width, or a name that
+                is a keyword or another's; a process indexes a list of slices, or Verilog would compute something else.
         """
         self.block = block
         check_keyword(block, block.func.__name__)
@@ -113,7 +100,7 @@ class Contents:
         self.arriving = dict(arriving)
         for name, signal in arriving:
             if self.arriving[name] is not signal:
-                raise refusal(block, f"two things would be called {name} in Verilog; rename one", name)
+                self._refuse(f"two things would be called {name} in Verilog; rename one", name)
         self._port_ids = {id(signal) for signal in self.arriving.values()}
         self._touched: dict[int, SignalType] = {}
         self._places: dict[int, str] = {}
@@ -127,7 +114,7 @@ class Contents:
         for name, known in block.memdict.items():
             if any(known.mem is one for one in lists) and all(known.mem is not one for one in self.memories.values()):
                 self.memories[name] = known.mem
-        trees = iter(analysed(processes))
+        trees = iter(internals.analysed(processes))
         self.parts = [next(trees) if isinstance(part, Process) else part for part in parts]
         for part, tree in zip(parts, self.parts, strict=True):
             if isinstance(part, Process):
@@ -139,13 +126,20 @@ class Contents:
         self._name_signals()
         self._check()
 
-    def text(self, connection: Connection) -> str:
-        """Return what is printed for a signal: its name, or the bits of the signal that it is cut from."""
-        if not isinstance(connection, SignalType):
+    def text(self, connection: Any) -> str:
+        """Return what is printed for a signal: its name, the bits that it is cut from, or what it is joined from."""
+        if connection is None or (isinstance(connection, str) and not set(connection) <= {"0", "1"}):
             return connection or ""
-        if (name := self.names.get(id(connection))) or not isinstance(connection, SliceSignal):
-            return name or ""
-        return self.bits(connection)
+        if name := self.names.get(id(connection)):
+            return name
+        if isinstance(connection, SliceSignal):
+            return self.bits(connection)
+        if isinstance(connection, ConcatSignal):
+            return f"{{{', '.join(map(self.text, internals.operands_of(connection)))}}}"
+        if isinstance(connection, str):
+            return f"{len(connection)}'b{connection}"
+        width = 1 if isinstance(connection, bool) else len(connection)
+        return f"{width}'b{int(getattr(connection, 'val', connection)) % (1 << width):0{width}b}"
 
     def bits(self, part: SliceSignal) -> str:
         """Return a slice as bits of a signal that has a name."""
@@ -164,7 +158,7 @@ class Contents:
                     self._places.setdefault(id(connected), f"{part.name}.{port.name}")
                     self._drive(connected, "wire", port.name) if port.output else self._read(connected)
         elif not isinstance(part, Loading):
-            kind = "wire" if assigned(part) else "reg"
+            kind = "wire" if internals.assigned(part) else "reg"
             for name in part.outputs:
                 self._drive(part.sigdict[name], kind, name)
             for name in part.outmems:
@@ -176,10 +170,10 @@ class Contents:
 
     def _drive(self, signal: SignalType, kind: str, name: str) -> None:
         name = next((own for own, one in self.block.sigdict.items() if one is signal), name)
-        if isinstance(signal, (ShadowSignal, Tied)):
-            raise refusal(self.block, f"{name} is a slice or a constant, and has a driver; connect a new signal", name)
+        if isinstance(signal, (ShadowSignal, Tied)) and id(signal) not in self._port_ids:
+            self._refuse(f"{name} is a slice or a constant, and has a driver; connect a new signal", name)
         if id(signal) in self.driven:
-            raise refusal(self.block, f"{name} has two drivers; connect one of them to a new signal", name)
+            self._refuse(f"{name} has two drivers; connect one of them to a new signal", name)
         self.driven[id(signal)] = kind
         self._touched[id(signal)] = signal
 
@@ -193,7 +187,7 @@ class Contents:
             if isinstance(one, SliceSignal):
                 waiting.append(bits_of(one)[0])
             elif isinstance(one, ConcatSignal):
-                waiting += [part for part in operands_of(one) if isinstance(part, SignalType)]
+                waiting += [part for part in internals.operands_of(one) if isinstance(part, SignalType)]
 
     def _find_ports(self) -> None:
         """Find the ports: signals among the arguments, and those of interfaces that the module uses."""
@@ -201,74 +195,68 @@ class Contents:
         self.ports: tuple[Port, ...] = ()
         self.names: dict[int, str] = {}
         for name, signal in sorted(self.arriving.items(), key=lambda item: item[0] not in arguments):
-            touched = id(signal) in self._touched
-            if touched or (name in arguments and not isinstance(signal, (Tied, Unconnected))):
-                if not touched:
-                    raise refusal(self.block, f"{name}: Port is not used; remove it", name)
+            needed = name in arguments and not isinstance(signal, (Tied, Unconnected))
+            if id(signal) in self._touched:
                 self.ports += (Port.of(name, signal, id(signal) in self.driven),)
                 self._take(name, -len(self.ports))  # one signal may be at two ports
                 self.names[id(signal)] = name
+            elif needed:
+                self._refuse(f"{name}: Port is not used; remove it", name)
 
     def _name_signals(self) -> None:
+        """Find the name of each signal: its variable, its place in a list or an interface, or a field of its record."""
         known: dict[int, str] = {}
         for name, signal in self.block.sigdict.items():
             known.setdefault(id(signal), name)
+        first = {number: place for place, number in enumerate(dict.fromkeys([*known, *self._touched]))}
         scope: dict[str, Any] = {}
         for sub in self.block.subs:
             scope |= {name: value for name, value in sub.callinfo.symdict.items() if not name.startswith("_")}
-        first = {number: place for place, number in enumerate(dict.fromkeys([*known, *self._touched]))}
         # A signal's own variable is a better name than its place in a list.
         for name, value in sorted(scope.items(), key=lambda item: not isinstance(item[1], SignalType)):
             for path, signal in signals_in(name, value):
                 known.setdefault(id(signal), path)
         for name, memory in self.memories.items():
             self._take(name, id(memory))
+            internals.set_name(memory, name)
             for index, element in enumerate(memory):
                 if self.names.setdefault(id(element), f"{name}[{index}]") != f"{name}[{index}]":
-                    raise refusal(
-                        self.block, f"{name}[{index}] is also {self.names[id(element)]}; use one of them", name
+                    self._refuse(
+                        f"a process indexes {name}, but {name}[{index}] is also {self.names[id(element)]}", name
                     )
-        self.signals: list[SignalType] = []
-        self.fields: list[Field] = []
-        for signal in sorted(self._touched.values(), key=lambda one: first[id(one)]):
-            if isinstance(signal, Field) and id(signal) not in self.names:
-                self.fields.append(signal)
-            elif not isinstance(signal, SliceSignal) and id(signal) not in self.names:
-                if id(signal) not in known:
-                    place = self._places.get(id(signal), "an instance or a process")
-                    raise refusal(self.block, f"the signal at {place} has no name; assign it to a variable")
-                self.names[id(signal)] = known[id(signal)]
-                self._take(known[id(signal)], id(signal))
-                self.signals.append(signal)
+        touched = sorted(self._touched.values(), key=lambda signal: first[id(signal)])
+        unnamed = [signal for signal in touched if id(signal) not in self.names]
+        inline = (ConcatSignal, Tied, Constant)  # printed where they are used, if no variable holds them
+        self.signals = [one for one in unnamed if not isinstance(one, SliceSignal)]
+        self.signals = [one for one in self.signals if id(one) in known or not isinstance(one, inline)]
         self.signals.sort(key=lambda signal: isinstance(signal, ConcatSignal))  # after their parts
+        for signal in self.signals:
+            place = self._places.get(id(signal), "a process or a joined signal")
+            self.names[id(signal)] = known.get(id(signal)) or self._refuse(
+                f"the signal at {place} has no name; assign it to a variable", ""
+            )
+            self._take(known[id(signal)], id(signal))
+        self.fields = [signal for signal in unnamed if isinstance(signal, Field)]
         self.fields.sort(key=lambda field: _place(field, first))
         for field in self.fields:
             word = bits_of(field)[0]
             record = self.names.get(id(word)) or known[id(word)]
             self.names[id(field)] = f"{record.removesuffix('_word')}_{field.field}"
             self._take(self.names[id(field)], id(field))
-        self._name_for_printing()
-
-    def _name_for_printing(self) -> None:
-        """Give MyHDL the names with which it prints processes, and check those of instances and variables."""
-        for name, memory in self.memories.items():
-            set_name(memory, name)
-        for signal in [*self._touched.values(), *(one for memory in self.memories.values() for one in memory)]:
-            set_name(signal, self.text(signal))
+        for signal in [*touched, *(one for memory in self.memories.values() for one in memory)]:
+            internals.set_name(signal, self.text(signal))
         for part in self.parts:
             if isinstance(part, Instance):
                 self._take(part.name, id(part))
             elif not isinstance(part, Loading):
-                texts = {self.text(signal) for signal in part.sigdict.values()}
+                texts = dict.fromkeys(map(self.text, part.sigdict.values()), 0)
                 for name in part.vardict:
-                    if name in texts:
-                        raise refusal(self.block, f"two things would be called {name} in Verilog; rename one", name)
-                    check_keyword(self.block, name)
+                    self._take(name, 1, texts)
 
-    def _take(self, name: str, owner: int) -> None:
-        """Refuse a second signal, memory or instance of one name, and a keyword."""
-        if self._owners.setdefault(name, owner) != owner:
-            raise refusal(self.block, f"two things would be called {name} in Verilog; rename one", name)
+    def _take(self, name: str, owner: int, owners: dict[str, int] | None = None) -> None:
+        """Refuse a keyword, and a name that something else has; `owners` are those of a process."""
+        if (self._owners if owners is None else owners).setdefault(name, owner) != owner:
+            self._refuse(f"two things would be called {name} in Verilog; rename one", name)
         check_keyword(self.block, name)
 
     def _check(self) -> None:
@@ -276,31 +264,27 @@ class Contents:
         for signal in self.signals:
             name = self.names[id(signal)]
             if not len(signal):
-                raise refusal(self.block, f"{name} has no width; write intbv(0)[8:] or intbv(0, min=-8, max=8)", name)
+                self._refuse(f"{name} has no width; write intbv(0)[8:] or intbv(0, min=-8, max=8)", name)
             if id(signal) not in self.driven and not isinstance(signal, (Tied, Constant, ConcatSignal)):
-                raise refusal(self.block, f"{name}: Signal is not driven; drive it, or use tied()", name)
+                self._refuse(f"{name}: Signal is not driven; drive it, or use tied()", name)
             if id(signal) not in self.read:
-                raise refusal(
-                    self.block,
-                    f"{name}: Signal is driven but not read; remove it, or use unconnected() for an instance's output",
-                    name,
-                )
+                remedy = "remove it, or use unconnected() for an instance's output"
+                self._refuse(f"{name}: Signal is driven but not read; {remedy}", name)
         for name, memory in self.memories.items():
             if any(isinstance(one, ShadowSignal) for one in memory):
-                raise refusal(
-                    self.block,
-                    f"a process indexes {name}, whose slices would have no value in Verilog; "
-                    "index the signal that they are cut from",
-                    name,
-                )
+                remedy = "whose slices would have no value in Verilog; index the signal that they are cut from"
+                self._refuse(f"a process indexes {name}, {remedy}", name)
             if len({(len(one), is_signed(one)) for one in memory}) > 1:
-                raise refusal(self.block, f"a process indexes {name}, whose signals differ in width or sign", name)
+                self._refuse(f"a process indexes {name}, whose signals differ in width or sign", name)
+
+    def _refuse(self, reason: str, name: str) -> NoReturn:
+        raise refusal(self.block, reason, name)
 
 
 def _place(field: Field, first: Mapping[int, int]) -> tuple[bool, int, int]:
     """Return what a module's fields are sorted by: the place of the word, then the place in it."""
     word = bits_of(field)[0]
-    place = next(number for number, other in enumerate(slices_of(word)) if other is field)
+    place = next(number for number, other in enumerate(internals.slices_of(word)) if other is field)
     return isinstance(word, SliceSignal), first[id(word)], place
 
 
@@ -316,7 +300,7 @@ def check_keyword(block: Block, name: str, vhdl: bool = False) -> None:
         UserError: the name is a keyword.
     """
     kind, _ = next(SystemVerilogLexer().get_tokens(name))
-    if name.lower() in vhdl_keywords if vhdl else kind in Keyword or kind in Operator:
+    if name.lower() in internals.vhdl_keywords if vhdl else kind in Keyword or kind in Operator:
         raise refusal(block, f"{name} is a keyword of {'VHDL' if vhdl else 'Verilog'}; rename it", name)
 
 

@@ -29,7 +29,12 @@ def prefixed(name: str, prefix: str) -> str:
 
 
 def convert_hierarchy(
-    top: Block, directory: Path, header: str, prefix: str = "", vocabulary: Mapping[str, Any] | None = None
+    top: Block,
+    directory: Path,
+    header: str,
+    prefix: str = "",
+    vocabulary: Mapping[str, Any] | None = None,
+    vhdl: bool = True,
 ) -> list[Module]:
     """Write one Verilog file for each distinct block below and including `top`.
 
@@ -38,42 +43,39 @@ def convert_hierarchy(
         directory: directory for the files, which exists.
         header: comment lines for the head of each file; `{module}` is replaced by the module's name.
         prefix: prefix of the names of modules and files; instances keep their names.
-        vocabulary: meanings of Python names in docstrings and comments; see `raycaster.hdl.port_comments.in_verilog`.
+        vocabulary: meanings of Python names in docstrings and comments; see `raycaster.hdl.port_comments.Comments`.
+        vhdl: True to refuse keywords of VHDL as names of the top and its ports, for parents in that language.
 
     Returns:
         The modules, each after those that it instantiates; `top` is the last.
 
     Raises:
-        UserError: a block cannot be a module: a signal has no driver or no reader; a process indexes a list of
-            slices; a constant is below 0; two things in it would have one name in Verilog; an instance connects to a
-            signal that no variable holds; given Verilog lists an output that is not an argument of its block, lacks
-            its module, or has the name of another block.
+        UserError: a block cannot be a module: see `raycaster.hdl.contents.Contents`; or given Verilog lists an output
+            that is not an argument of its block, lacks its module, or has the name of another block.
     """
     with elaboration(), faults_in_one_line():
-        return _Converter(directory, header, prefix, vocabulary or {}).modules_of(top)
+        converter = _Converter(directory, header, prefix, vocabulary or {})
+        module = converter.module_of(top)
+        for name in (top.func.__name__, *(port.name for port in module.ports)) if vhdl else ():
+            check_keyword(top, name, vhdl=True)
+        return [*converter.modules.values()]
 
 
 class _Converter:
     def __init__(self, directory: Path, header: str, prefix: str, vocabulary: Mapping[str, Any]):
         self._directory, self._header, self._prefix, self._vocabulary = directory, header, prefix, vocabulary
         self._kinds: dict[str, Any] = {}
-        self._modules: dict[str, Module] = {}
+        self.modules: dict[str, Module] = {}
         self._initial: dict[str, list[int]] = {}
 
-    def modules_of(self, top: Block) -> list[Module]:
-        """Return the modules of a block and of all in it."""
-        for name in (top.func.__name__, *(port.name for port in self._module_of(top).ports)):
-            check_keyword(top, name, vhdl=True)
-        return [*self._modules.values()]
-
-    def _module_of(self, block: Block) -> Module:
+    def module_of(self, block: Block) -> Module:
         """Return the block's module, after writing it unless a block of the same kind has one."""
         if given := getattr(block.func, "given_verilog", None):
             return self._copy(given, block)
         if block.verilog_code is not None:
             raise refusal(block, "verilog_code has no ports; write its text as a module, and use given_verilog")
         kind, ports = _kind(block), block_ports(block)
-        for known, module in self._modules.items():
+        for known, module in self.modules.items():
             if self._kinds[known] == kind and self._initial[known] == _initial(module, ports):
                 return module
         name = first = prefixed(block.func.__name__, self._prefix)
@@ -82,9 +84,9 @@ class _Converter:
             number += 1
             name = f"{first}_{number}"
         self._kinds[name] = kind  # the name is taken while the block's own parts are converted
-        self._modules[name] = self._convert_block(block, name, ports)
-        self._initial[name] = _initial(self._modules[name], ports)
-        return self._modules[name]
+        self.modules[name] = self._convert_block(block, name, ports)
+        self._initial[name] = _initial(self.modules[name], ports)
+        return self.modules[name]
 
     def _copy(self, given: GivenVerilog, block: Block) -> Module:
         """Return the module of given Verilog: one file for all instances, each with its own parameters."""
@@ -108,16 +110,16 @@ class _Converter:
             if not found:
                 raise refusal(block, f"{given.source()} has no module {given_name}; name the block after the module")
             path.write_text(text)
-            self._kinds[name], self._modules[name] = block.func, Module(name, path, shapes, {}, parameters)
+            self._kinds[name], self.modules[name] = block.func, Module(name, path, shapes, {}, parameters)
         if self._kinds[name] is not block.func:
             raise refusal(block, f"{name} is the name of given Verilog, which stays, and of another block; rename that")
-        return replace(self._modules[name], ports=shapes, parameters=parameters)
+        return replace(self.modules[name], ports=shapes, parameters=parameters)
 
     def _convert_block(self, block: Block, name: str, ports: dict[str, SignalType]) -> Module:
         """Write a block's module after those of the blocks in it."""
         loading: Any = load_words
         children = [sub for sub in block.subs if isinstance(sub, Block) and sub.func is not loading.func]
-        modules = {id(child): self._module_of(child) for child in children}
+        modules = {id(child): self.module_of(child) for child in children}
         instances: dict[str, str] = {}
         parts: list[Any] = []
         for sub in block.subs:
@@ -158,7 +160,7 @@ def _connections(child: Block, module: Module, parent_ports: Mapping[str, Signal
             continue
         if isinstance(signal, Unconnected):
             connections[port.name] = None
-        elif isinstance(source, Tied):
+        elif isinstance(source, Tied) and not port.output:
             connections[port.name] = number(signal)
     return connections
 

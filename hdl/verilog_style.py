@@ -116,7 +116,7 @@ def _wires(contents: Contents) -> Iterator[str]:
         if isinstance(signal, Joined):
             # Comments stand where MyHDL's longer bounds put them, [8-1:0] for [7:0].
             values = [
-                re.sub(r"(\d+)(?=:)", lambda high: f"{int(high[1]) + 1}-1", _operand(contents, part))
+                re.sub(r"(\d+)(?=:)", lambda high: f"{int(high[1]) + 1}-1", contents.text(part))
                 for part in signal.parts.values()
             ]
             longest = max(map(len, values)) + 1
@@ -129,17 +129,9 @@ def _wires(contents: Contents) -> Iterator[str]:
             for part in operands_of(signal):
                 low = high - (1 if isinstance(part, bool) else len(part))
                 bits = f"{high - 1}:{low}" if high - low > 1 else f"{low}"
-                yield f"assign {name}[{bits}] = {_operand(contents, part)};\n"
+                value = re.sub(r"^\d+'b", "'b", contents.text(part))
+                yield f"assign {name}[{bits}] = {value};\n"
                 high = low
-
-
-def _operand(contents: Contents, part: Any) -> str:
-    """Return a part of a joined signal."""
-    if isinstance(part, SignalType):
-        return contents.text(part)
-    if isinstance(part, bool):
-        return f"1'b{int(part)}"
-    return f"{len(part)}'b{part if isinstance(part, str) else format(int(part), f'0{len(part)}b')}"
 
 
 def _part(part: Any, contents: Contents, comments: Comments) -> tuple[str, str]:

@@ -4,6 +4,7 @@
 import importlib.metadata
 import inspect
 import re
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from myhdl import ConcatSignal, Simulation, enum, instance, intbv
 from test_project import MAY_IMPORT
 
 from raycaster.hdl import internals
-from raycaster.hdl.elaboration import _DEEPEST, elaboration
+from raycaster.hdl.elaboration import _DEEPEST, _Frame, elaboration
 from raycaster.hdl.signals import bit, unsigned
 
 
@@ -26,14 +27,32 @@ def test_elaboration_leaves_nothing_behind():
     with elaboration():
         assert inspect.stack is not before
         # MyHDL reads these parts of a frame.
-        assert [(frame[0], frame[3]) for frame in inspect.stack()] == slow
-        assert [(frame[0], frame[3]) for frame in inspect.getouterframes(inspect.currentframe())] == slow
+        for quick in (inspect.stack(), inspect.getouterframes(inspect.currentframe())):
+            assert [(getattr(frame[0], "_frame", frame[0]), frame[3]) for frame in quick] == slow
         for _ in range(2):
             assert (inspect.getsourcelines(swap.func), inspect.getsourcefile(swap.func)) == (lines, file)
         signal = bit()
         assert internals.all_signals[-1] is signal
     assert inspect.stack is before
     assert len(internals.all_signals) == known
+
+
+def test_variables_have_the_order_of_python_3_11():
+    """Those that an inner function or a comprehension reads follow the others by name; those bound later follow all."""
+
+    def function(second, first):
+        read_by_list, read_by_function, plain = 2, 3, 1
+        listed = [element + read_by_list for element in range(first)]
+        inner = lambda: read_by_function  # noqa: E731
+        frame = _Frame(sys._getframe())
+        early = list(frame.f_locals)
+        late = plain, inner
+        return early, list(frame.f_locals), listed, late
+
+    with elaboration():
+        early, late, *_ = function(1, 2)
+    assert early == ["second", "first", "plain", "listed", "inner", "frame", "read_by_function", "read_by_list"]
+    assert late == [*early, "early", "late"]
 
 
 def test_two_threads_convert_as_one_after_the_other(tmp_path):

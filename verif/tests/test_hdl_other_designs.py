@@ -164,6 +164,7 @@ def test_an_example_converts_as_myhdl_does(file, examples, tmp_path, random, mon
         active = name in ("StopWatch", "TimeCount", "SineComputer")
         inputs |= {port: int((cycle > 2) != active) for port in inputs if port in ("reset", "rst", "reset_n", "tx_rst")}
         inputs |= {port: inputs[port] % 10 for port in inputs if port == "bcd"}
+        inputs |= {port: max(inputs[port], 1) for port in inputs if port == "A"}  # a decrement below 0 is out of range
         clocks = [port for port in inputs if port in ("clock", "tx_clk")]
         stimulus += [inputs | dict.fromkeys(clocks, phase) for phase in (0, 1)]
     modules = leaf.run_verilog(stimulus)

@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: MIT
 """Blocks whose arguments differ are modules that differ; equal ones share a module."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 from hdl_blocks import Pair, another_inverted, inverted
-from myhdl import Signal, always, always_comb, block, intbv
+from myhdl import ResetSignal, Signal, always_comb, always_seq, block, intbv
 
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.records import Interface, Record
-from raycaster.hdl.signals import bit, signed, unsigned
-
-
-class Mirrored(Pair):
-    """Pair that a block can recognise by its class."""
+from raycaster.hdl.signals import Signed, bit, signed, unsigned
 
 
 class Mode:
@@ -25,18 +23,11 @@ class Mode:
         return "a mode"
 
 
-class Halves(Record):
-    """A byte in two parts of variable width."""
-
-    def __init__(self, high: int):
-        super().__init__({"high": high, "low": 8 - high})
-
-
 class Late(Interface):
     """A signal and a constant to add to it."""
 
-    def __init__(self, amount: object, value=None):
-        self.value, self.amount = unsigned(4) if value is None else value, amount
+    def __init__(self, value, amount):
+        self.value, self.amount = value, amount
 
 
 def number_of(value, amount) -> int:
@@ -49,11 +40,11 @@ def number_of(value, amount) -> int:
 
 
 @block
-def offset(clk, late, moved):
+def offset(clk, reset, late, moved):
     """moved = value + a number from the arguments, modulo 256."""
     step_by, value = number_of(late.value, late.amount), late.value
 
-    @always(clk.posedge)
+    @always_seq(clk.posedge, reset=reset)
     def work():
         moved.next = (value + step_by) % 256
 
@@ -61,54 +52,60 @@ def offset(clk, late, moved):
 
 
 @block
-def offsets(clk, late, later, first, second):
+def offsets(clk, reset, other_reset, late, later, first, second):
     """Apply two offsets."""
-    one = offset(clk, late, first)
-    two = offset(clk, later, second)
+    one = offset(clk, reset, late, first)
+    two = offset(clk, other_reset, later, second)
 
     return one, two
 
 
 ONE = Mode(1)
 PEAK = np.eye(1, 3000, 1500)[0]
-RANGES = {"4 bits": lambda: unsigned(4), "below 10": lambda: Signal(intbv(0, min=0, max=10)), "a bit": bit,
-          "one bit": lambda: unsigned(1), "signed": lambda: signed(4)}  # fmt: skip
+AMOUNTS = [(1, 1), (1, 2), (1, True), (0, False), (ONE, ONE), (ONE, Mode(2)), (PEAK, 2 * PEAK), ((0, 0), (0, 0)),
+           ((0, 0), (0, 0, 0)), ((1, 0), (True, 0)), (1, Signed(1))]  # fmt: skip
+RANGES = [lambda: unsigned(4), lambda: Signal(intbv(0, min=0, max=10)), bit, lambda: unsigned(1), lambda: signed(4)]
+PLAIN = {"amounts": (1, 1), "ranges": RANGES[:1] * 2, "initial": (0, 0), "active": (1, 1)}
 
 
 @pytest.mark.parametrize(
-    ("amounts", "apart"),
-    [
-        ((1, 1), False), ((1, 2), True), ((1, True), True), ((0, False), True), ((ONE, ONE), False),
-        ((ONE, Mode(2)), True), ((PEAK, 2 * PEAK), True), (((0, 0), (0, 0)), False), (((0, 0), (0, 0, 0)), True),
-        (((1, 0), (True, 0)), True),
-    ],
-    ids=repr,
-)  # fmt: skip
-def test_parameters_that_differ_make_modules_that_differ(amounts, apart, tmp_path):
-    check_offsets(amounts, ("4 bits", "4 bits"), apart, tmp_path)
+    ("differing", "values", "apart"),
+    [("amounts", amounts, number not in (0, 4, 7)) for number, amounts in enumerate(AMOUNTS)]
+    + [("ranges", pair, pair[0] is not pair[1]) for pair in product(RANGES, repeat=2)]
+    + [("initial", (3, 3), False), ("initial", (3, 5), True), ("active", (0, 0), False), ("active", (1, 0), True)],
+)
+def test_arguments_that_differ_make_modules_that_differ(differing, values, apart, tmp_path):
+    amounts, ranges, initial, active = (PLAIN | {differing: values}).values()
 
-
-@pytest.mark.parametrize("second", RANGES)
-@pytest.mark.parametrize("first", RANGES)
-def test_ranges_that_differ_make_modules_that_differ(first, second, tmp_path):
-    check_offsets((1, 1), (first, second), first != second, tmp_path)
-
-
-def check_offsets(amounts, ranges, apart, tmp_path) -> None:
     def arguments() -> dict:
-        lates = (Late(amount, RANGES[name]()) for amount, name in zip(amounts, ranges, strict=True))
-        return {"clk": bit(), "first": unsigned(8), "second": unsigned(8)} | dict(
-            zip(("late", "later"), lates, strict=True)
-        )
+        resets = (ResetSignal(0, active=level, isasync=False) for level in active)
+        lates = (Late(make(), amount) for make, amount in zip(ranges, amounts, strict=True))
+        moved = (Signal(intbv(value)[8:]) for value in initial)
+        names = ("clk", "reset", "other_reset", "late", "later", "first", "second")
+        return dict(zip(names, (bit(), *resets, *lates, *moved), strict=True))
 
     leaf = Leaf(offsets, arguments, tmp_path)
     assert leaf.modules[-1].instances == {"offset_0": "offset", "offset_1": "offset_1" if apart else "offset"}
     assert [module.name for module in leaf.modules] == ["offset", *["offset_1"] * apart, "offsets"]
-    outputs = leaf.run_both([{"late_value": 1, "later_value": 1}] * 3, settled=2)[-1]
-    values = [RANGES[name]() for name in ranges]
-    assert list(outputs.values()) == [
-        1 + number_of(value, amount) for value, amount in zip(values, amounts, strict=True)
+    stimulus = [
+        {"reset": active[0] ^ off, "other_reset": active[1] ^ off, "late_value": 1, "later_value": 1}
+        for off in (0, 1, 1)
     ]
+    outputs = leaf.run_both(stimulus, settled=1)
+    assert tuple(outputs[1].values()) == initial
+    expected = (1 + number_of(make(), amount) for make, amount in zip(ranges, amounts, strict=True))
+    assert tuple(outputs[2].values()) == tuple(expected)
+
+
+class Mirrored(Pair):
+    """Pair that a block can recognise by its class."""
+
+
+class Halves(Record):
+    """A byte in two parts of variable width."""
+
+    def __init__(self, high: int):
+        super().__init__({"high": high, "low": 8 - high})
 
 
 @block
