@@ -4,16 +4,23 @@
 import re
 
 import numpy as np
+import pytest
 from hdl_blocks import Pair, converted, everything, everything_arguments, inverted, step
 from myhdl import ConcatSignal, always_comb, block
 
 from raycaster.hdl.hierarchy import Port
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.signals import bit, signed, tied, unconnected, unsigned
+from raycaster.sim.simulator import find_tool
 from raycaster.verif.seeds import repeat, seed
 
 
-def test_every_kind_of_connection_works(tmp_path):
+@pytest.mark.parametrize("simulator", ["icarus", "verilator"])
+def test_every_kind_of_connection_works(simulator, tmp_path, monkeypatch):
+    """Both simulators of Verilog agree with MyHDL."""
+    for name, value in find_tool("verilator").environment.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr(Leaf, "simulator", simulator)
     leaf = Leaf(everything, everything_arguments, tmp_path)
     random = np.random.default_rng(seed())
     names = {"word": 256, "pair_high": 16, "pair_low": 16}
