@@ -7,7 +7,6 @@ import re
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from raycaster.configuration import Configuration, need_avalon
 from raycaster.convert.take_home import PREFIX, write_take_home
@@ -15,7 +14,7 @@ from raycaster.convert.vocabulary import VOCABULARY
 from raycaster.errors import UserError
 from raycaster.hdl.elaboration import elaborated, elaboration
 from raycaster.hdl.hierarchy import Module, convert_hierarchy
-from raycaster.hdl.internals import Block, EnumItemType
+from raycaster.hdl.internals import Block, EnumItemType, states_of
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.output import replaced
 from raycaster.rtl.dvi.dvi_encoder import dvi_encoder
@@ -104,9 +103,8 @@ def state_names(top: Block) -> dict[tuple[str, str], dict[int, str]]:
     found = {}
     for name, signal in top.sigdict.items():
         if isinstance(signal.val, EnumItemType):
-            value: Any = signal.val
-            states = value._type
-            found[top.func.__name__, name] = {int(getattr(states, item)._val, 2): item for item in states._names}
+            states = states_of(signal.val)
+            found[top.func.__name__, name] = {int(code, 2): state for state, code in states.items()}
     for sub in top.subs:
         if isinstance(sub, Block):
             found |= state_names(sub)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from myhdl import ConcatSignal
 
-from raycaster.hdl.internals import Block, Process, SignalType, SliceSignal
+from raycaster.hdl.internals import Block, Process, SignalType, SliceSignal, bits_of, operands_of
 from raycaster.hdl.records import block_arguments, block_ports, signals_in
 
 
@@ -113,9 +113,9 @@ def _whole(signals: Signals) -> frozenset[int]:
     while waiting:
         signal = waiting.pop()
         if isinstance(signal, SliceSignal):
-            waiting.append(signal._sig)
+            waiting.append(bits_of(signal)[0])
         elif isinstance(signal, ConcatSignal):
-            waiting += signal._sigargs
+            waiting += [part for part in operands_of(signal) if isinstance(part, SignalType)]
         else:
             found.add(id(signal))
     return frozenset(found)

@@ -3,17 +3,19 @@
 
 from __future__ import annotations
 
+import ast
 import gc
 import inspect
 import sys
+import textwrap
 import threading
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from functools import cache
 from types import CodeType
 from typing import Any
 
-from raycaster.hdl.internals import Block, all_signals, util, waiter
+from raycaster.hdl.internals import SOURCE_READERS, Block, all_signals
 
 _ELABORATING = threading.RLock()
 """Lock for a single design at a time, as MyHDL elaborates, simulates and converts through globals."""
@@ -45,6 +47,7 @@ def elaboration() -> Iterator[None]:
             gc.set_threshold(*thresholds)
             for module, name, slow in before:
                 setattr(module, name, slow)
+            _SEEN.clear()
 
 
 @contextmanager
@@ -74,8 +77,68 @@ def _callers(*_: Any) -> list[inspect.FrameInfo]:
     found, frame = [], sys._getframe()
     while len(found) < _DEEPEST and (frame := frame.f_back):
         code = frame.f_code
-        found.append(inspect.FrameInfo(frame, code.co_filename, frame.f_lineno, code.co_name, None, None))
+        shown: Any = frame if sys.version_info < (3, 12) else _Frame(frame)
+        found.append(inspect.FrameInfo(shown, code.co_filename, frame.f_lineno, code.co_name, None, None))
     return found
+
+
+class _Frame:
+    """A frame with its variables as Python 3.11 has them, so that the Verilog is the same for each version of Python.
+
+    From 3.12 on a comprehension is no function of its own: its variables are among those of the function around it, and
+    the variables that it reads do not follow the others, by name, as those that inner functions read do. From 3.13 on
+    variables bound later do not follow those that were bound when MyHDL looked before.
+    """
+
+    def __init__(self, frame: Any):
+        self.f_globals, self._frame = frame.f_globals, frame
+
+    @property
+    def f_locals(self) -> dict[str, Any]:
+        """The variables."""
+        code, values = self._frame.f_code, self._frame.f_locals
+        hidden, captured = _scopes(code)
+        names = dict.fromkeys((*code.co_varnames, *code.co_cellvars, *code.co_freevars))
+        # Python 3.13.0 crashes if it reads a comprehension's variable while the comprehension runs.
+        own = [(name, values[name]) for name in names if name not in hidden and name in values]
+        free = code.co_freevars
+        last = {name: (2, "") for name in free} | {name: (1, name) for name in captured}
+        known = _SEEN.setdefault(self._frame, {})
+        known.update(sorted(own, key=lambda item: last.get(item[0], (0, ""))))
+        return known
+
+
+_SEEN: dict[Any, dict[str, Any]] = {}
+"""Variables of each frame of a design that is being elaborated, in the order in which they were found."""
+
+
+@cache
+def _scopes(code: CodeType) -> tuple[set[str], set[str]]:
+    """Return the variables of comprehensions in a function, and those of its own that inner functions or they read."""
+    try:
+        [tree] = ast.parse(textwrap.dedent(inspect.getsource(code))).body
+    except (OSError, SyntaxError, ValueError):
+        return set(), set()
+    inner: set[ast.AST] = set()
+    captured: set[str] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)):
+            parts = set(ast.walk(node)) - set(ast.walk(node.generators[0].iter))
+        elif isinstance(node, (ast.FunctionDef, ast.Lambda)) and node is not tree:
+            lines = node.body if isinstance(node.body, list) else [node.body]
+            parts = {part for line in lines for part in ast.walk(line)}
+        else:
+            continue
+        inner |= parts
+        captured |= _names(parts, ast.Load) - _names(parts, ast.Store)
+    arguments = set(code.co_varnames[: code.co_argcount + code.co_kwonlyargcount])
+    own = arguments | _names(set(ast.walk(tree)) - inner, ast.Store)
+    return _names(inner, ast.Store) - own, captured & own - arguments
+
+
+def _names(nodes: Collection[ast.AST], kind: type[ast.expr_context]) -> set[str]:
+    """Return the names that are read or bound in some nodes."""
+    return {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, kind)}
 
 
 def _code_of(what: Any) -> CodeType | None:
@@ -102,7 +165,6 @@ _REPLACED = (
     (inspect, "getouterframes", _callers),
     (inspect, "getsourcelines", _once(inspect.getsourcelines)),
     (inspect, "getsourcefile", _once(inspect.getsourcefile)),
-    (util, "_dedent", _dedent := cache(util._dedent)),
-    (waiter, "_dedent", _dedent),
+    *((module, name, cache(getattr(module, name))) for module, name in SOURCE_READERS),
 )
 """Functions that MyHDL calls, and their replacements."""

@@ -41,13 +41,18 @@ class Leaf:
     with_myhdl = True
     """True if `run_both` also simulates MyHDL. As that is slow, tests do it for one parameter set per block."""
 
+    simulator: ClassVar[str] = "icarus"
+    """Verilog simulator: icarus, or verilator, which knows no unknown bits and takes seconds to compile a block."""
+
     recorder: ClassVar[Callable[[Any, Sequence[Cycle], Sequence[Cycle], int], None] | None] = None
     """Called with the leaf, the stimulus, the expected outputs and `settled` after each `run_both` with MyHDL."""
 
     def __init__(self, function: Callable, arguments: Callable[[], dict[str, Any]], directory: Path):
         self._function, self._arguments, self._directory = function, arguments, directory
         with elaboration(), faults_in_one_line():
-            self.modules: list[Module] = convert_hierarchy(function(**arguments()), directory, "// {module}")
+            self.modules: list[Module] = convert_hierarchy(
+                function(**arguments()), directory, "// {module}", vhdl=False
+            )
         self.verilog: Sequence[Path] = [module.path for module in self.modules]
         """Files that `run_verilog` simulates; another form of the same block, such as its netlist, may replace them."""
         ports = self.modules[-1].ports
@@ -95,16 +100,23 @@ class Leaf:
         return recorded
 
     def run_verilog(self, stimulus: Sequence[Cycle]) -> list[dict[str, int | None]]:
-        """Simulate the converted Verilog in Icarus; as `run_myhdl`, with None for an output that has an unknown bit."""
+        """Simulate the converted Verilog; as `run_myhdl`, with None for an output that has an unknown bit.
+
+        Raises:
+            AssertionError: the simulator refuses the Verilog; its output.
+        """
         words = self.input_words(stimulus)
         (self._directory / "stimulus.hex").write_text("".join(f"{word:x}\n" for word in words))
         width = sum(port.width for port in self.inputs.values())
         (self._directory / "leaf_bench.v").write_text(self._bench(width, len(stimulus)))
-        sources = [str(path.resolve()) for path in self.verilog]
-        self._call(
-            "iverilog", "-g2005", "-Wall", "-Wno-timescale", "-s", "leaf_bench", "-o", "leaf", "leaf_bench.v", *sources
-        )
-        self._call("vvp", "-n", "leaf")
+        sources = ["leaf_bench.v", *(str(path.resolve()) for path in self.verilog)]
+        if self.simulator == "verilator":
+            flags = ("--binary", "-Wno-fatal", "-Wno-lint", "-CFLAGS", "-fcoroutines -std=gnu++20")
+            self._call("verilator", *flags, "--top", "leaf_bench", "-o", "leaf", *sources)
+            self._call("obj_dir/leaf")
+        else:
+            self._call("iverilog", "-g2005", "-Wall", "-Wno-timescale", "-s", "leaf_bench", "-o", "leaf", *sources)
+            self._call("vvp", "-n", "leaf")
         recorded = []
         for line in (self._directory / "outputs.txt").read_text().splitlines():
             bits = dict(zip(self.outputs, line.split(), strict=True))

@@ -69,15 +69,20 @@ class _Check(ast.NodeVisitor):
         else:
             super().visit(node)
 
-    def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
-        """Check the body only."""
+    def visit_FunctionDef(self, node: ast.FunctionDef | ast.For) -> None:
+        """Check the body only; the range of a loop is constant."""
         for statement in node.body:
             self.visit(statement)
+
+    visit_For = visit_FunctionDef
 
     def visit_Expr(self, node: ast.Expr) -> None:
         """Check a task's arguments; what a process waits for, and a text, compute nothing."""
         if isinstance(node.value, ast.Call) and _called(node.value) is not print:
             self._alone(node.value)
+
+    def visit_Raise(self, node: ast.Raise) -> None:
+        """Accept it, as it ends a simulation in Verilog too."""
 
     def visit_Return(self, node: ast.Return) -> None:
         """Refuse an early end of a process, which synthesis does."""
@@ -99,11 +104,6 @@ class _Check(ast.NodeVisitor):
         result = ast.copy_location(ast.BinOp(node.target, node.op, node.value), node)
         self._computed(result, self._range(node.target).bits)
 
-    def visit_For(self, node: ast.For) -> None:
-        """Check the body; the range of a loop is constant."""
-        for statement in node.body:
-            self.visit(statement)
-
     def _alone(self, node: ast.expr) -> None:
         self._judge(node, self._range(node).bits, None)
 
@@ -118,14 +118,20 @@ class _Check(ast.NodeVisitor):
             width: bits with which Verilog computes it.
             needed: the number of its lowest bits that are used, None for all.
         """
+        parts = [node.test] if isinstance(node, ast.IfExp) else ast.iter_child_nodes(node)
+        if not isinstance(node, (ast.Call, ast.Subscript)) and any(map(_is_choice, parts)):
+            self._refuse(node, "Verilog would compute the operator in one branch only; assign the choice to a signal")
         match node:
             case ast.BinOp(op=ast.LShift() | ast.RShift() as op):
                 self._fits(node, width, needed)
                 self._judge(node.left, width, needed if isinstance(op, ast.LShift) else None)
                 self._alone(node.right)
-            case ast.BinOp(op=ast.Mod()):
-                self._judge(node.left, width, self._wrapped(node, needed))
+            case ast.BinOp(op=ast.Mod() | ast.FloorDiv()):
+                used = self._wrapped(node, needed)
+                self._judge(node.left, width, used)
                 self._judge(node.right, width, None)
+                if used is None and min(self._range(node.left).low, self._range(node.right).low) < 0:
+                    self._refuse(node, "below 0 Verilog rounds up, and Python down; shift to the right, or take bits")
             case ast.BinOp():
                 inner = needed if isinstance(node.op, CARRYING) else None
                 self._fits(node, width, needed)
@@ -180,7 +186,9 @@ class _Check(ast.NodeVisitor):
             self._alone(argument)
 
     def _wrapped(self, node: ast.BinOp, needed: int | None) -> int | None:
-        """Return the bits of a dividend that are used: few, if the divisor is a power of two."""
+        """Return the bits of a dividend that are used: few for a remainder, if the divisor is a power of two."""
+        if not isinstance(node.op, ast.Mod):
+            return None
         divisor, dividend = self._range(node.right), self._range(node.left)
         power = divisor.high.bit_length() - 1
         if divisor.low != divisor.high or divisor.high != 1 << power:
@@ -223,7 +231,9 @@ class _Check(ast.NodeVisitor):
             case ast.Compare() | ast.BoolOp() | ast.UnaryOp():
                 known: Any = False
             case ast.Subscript(slice=ast.Slice() as bits) if not isinstance(node.value, ast.Call):
-                known = intbv(0)[self._bound(bits.lower, len(_known(node))) - self._bound(bits.upper, 0) :]
+                whole = _known(node)
+                width = len(whole) if isinstance(whole, (intbv, SignalType)) else INTEGER_BITS
+                known = intbv(0)[self._bound(bits.lower, width) - self._bound(bits.upper, 0) :]
             case _:
                 known = _known(node)
         return _range_of_type(known)
@@ -268,6 +278,13 @@ def _called(node: ast.expr) -> Any:
 def _known(node: ast.expr) -> Any:
     """Return what MyHDL knows of an expression: its signal, or a value of its type."""
     return getattr(node, "obj", None)
+
+
+def _is_choice(node: ast.AST) -> bool:
+    """Return True for `a if b else c`, which MyHDL prints without parentheses."""
+    return isinstance(node, ast.IfExp) or (
+        isinstance(node, ast.Call) and _called(node) in (int, intbv) and any(map(_is_choice, node.args))
+    )
 
 
 def _either(one: _Range, other: _Range) -> _Range:

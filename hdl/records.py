@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from myhdl import ConcatSignal
 
-from raycaster.hdl.internals import Block, ShadowSignal, SignalType, SignalWaiter, SliceSignal
+from raycaster.hdl.internals import Block, SignalType, SignedSlice, SliceSignal, slices_of
 from raycaster.hdl.signals import Signed, Tied, Unconnected, initial, tied, unsigned
 
 
@@ -20,37 +20,17 @@ class Interface:
     is_interface = True
 
 
-class Part(SliceSignal):
-    """Bits of a port's word, which may itself be a part, or several words side by side."""
-
-    def _setName(self, hdl):
-        """Name the bits as MyHDL does, but without following the word to its own source, which is in another module."""
-        bits = self._left if self._right is None else f"{self._left}-1:{self._right}"
-        self._name = f"{self._sig._name}[{bits}]"
-
-
-class Field(Part):
+class Field(SignedSlice):
     """A record's field: read-only bits of its word. In Verilog it is a wire in the module that reads it."""
 
     def __init__(self, word: SignalType, name: str, low: int, width: int):
         """Create the field from bits of a word; a `Signed` width means two's complement."""
-        bits = word.val[low + width : low]
-        value = int(bits.signed()) if isinstance(width, Signed) else int(bits)
-        ShadowSignal.__init__(self, initial(value, width))
         self.field = name
-        self._sig, self._left, self._right = word, low + width, low
-        if width == 1:
-            self._left, self._right = low, None
-        word._slicesigs.append(self)
-        self._waiter = SignalWaiter(self._genfuncIndex() if width == 1 else self._genfuncSlice())
-
-    def _genfuncSlice(self):
-        """Follow the word as MyHDL does, but keep the sign of a signed field."""
-        set_next: Any = SignalType.next.fset
-        while True:
-            bits = self._sig[self._left : self._right]
-            set_next(self, bits.signed() if self.min < 0 else bits)
-            yield self._sig
+        if isinstance(width, Signed):
+            super().__init__(word, initial(int(word.val[low + width : low].signed()), width), low + width, low)
+        else:
+            SliceSignal.__init__(self, word, *((low,) if width == 1 else (low + width, low)))
+        slices_of(word).append(self)
 
 
 class Joined(ConcatSignal):
@@ -59,35 +39,6 @@ class Joined(ConcatSignal):
     def __init__(self, parts: Mapping[str, SignalType | bool]):
         super().__init__(*parts.values())
         self.parts = dict(parts)
-
-    def _markRead(self):
-        """Mark the parts as read, as MyHDL does; a slice of a field also marks the field's word."""
-        self._read = True
-        for part in self._sigargs:
-            read = part
-            while isinstance(read, SliceSignal):
-                read._markRead()
-                read = read._sig
-            read._markRead()
-
-    def toVerilog(self) -> str:
-        """Return the Verilog assignment, with one field per line."""
-        values = [_text(part) for part in self.parts.values()]
-        longest = max(map(len, values)) + 1
-        lines = [
-            f"    {value + ',' * (after < len(values)):{longest}}  // {name}"
-            for after, (name, value) in enumerate(zip(self.parts, values, strict=True), 1)
-        ]
-        return f"assign {self._name} = {{\n" + "\n".join(lines) + "\n};"
-
-
-def _text(part: Any) -> str:
-    """Return a field's value in Verilog."""
-    if isinstance(part, ConcatSignal):
-        return f"{{{', '.join(map(_text, part._args))}}}"
-    if isinstance(part, SliceSignal) and isinstance(part._sig, Field) and not isinstance(part, Field):
-        return f"{part._sig._name}[{part._left}-1:{part._right}]"
-    return f"1'b{int(part)}" if isinstance(part, bool) else part._name
 
 
 class Record:
@@ -173,9 +124,7 @@ class Record:
     def cut(self, words: SignalType, index: int) -> Self:
         """Make the record one of several packed side by side in words, the first in the lowest bits, and return it."""
         width = len(self.word)
-        part = Part(words, (index + 1) * width, index * width)
-        words._slicesigs.append(part)
-        Record.__init__(self, self._fields(), part)
+        Record.__init__(self, self._fields(), words((index + 1) * width, index * width))
         return self
 
     def tie(self, values: Mapping[str, int]) -> Self:

@@ -1,147 +1,189 @@
 # SPDX-License-Identifier: MIT
-"""Turn Verilog as MyHDL prints it into Verilog as a person would write it, with the same meaning."""
+"""Print a module's Verilog as a person would write it, from its contents."""
 
 from __future__ import annotations
 
-import ast
-import inspect
-import operator
 import re
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from raycaster.hdl.internals import Block, EnumItemType, Process
-from raycaster.hdl.port_comments import commented, in_verilog, split
+from myhdl import ConcatSignal
+
+from raycaster.hdl.contents import Contents, Instance, Loading, is_signed
+from raycaster.hdl.internals import Constant, EnumItemType, SignalType, operands_of, printed, states_by_name, states_of
+from raycaster.hdl.port_comments import Comments
+from raycaster.hdl.records import Joined
+from raycaster.hdl.signals import Tied
 
 LINE_LENGTH = 120
 
-_OPERATORS = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.LShift: operator.lshift,
-    ast.USub: operator.neg,
-}
 
+def module_text(contents: Contents, name: str, header: str, vocabulary: Mapping[str, Any]) -> str:
+    """Return the file of one module.
 
-def restyle(text: str, block: Block, ports: Sequence[str], vocabulary: Mapping[str, Any]) -> str:
-    """Restyle one module.
-
-    A comment above a process is kept. Port lists become ANSI style, codes of states become names, constant expressions
-    become numbers, and needless parentheses are dropped. Blank lines separate processes and instances.
+    The block's docstring is above the module, its arguments' texts are above the ports, and the comment above a process
+    is kept. Blank lines separate processes and instances.
 
     Args:
-        text: MyHDL's output.
-        block: the block that was converted.
-        ports: names of the module's ports, in order.
-        vocabulary: meanings of Python names in comments.
+        contents: the block's signals, processes and instances.
+        name: name of the module.
+        header: comment lines for the head of the file.
+        vocabulary: meanings of Python names in comments; see `raycaster.hdl.port_comments.Comments`.
     """
-    for sub in block.subs:
-        if isinstance(sub, Process):
-            text = _comment(text, sub, block, vocabulary)
-    # A block that declares nothing needs no name, which would cost Icarus a thread at each evaluation.
-    text = re.sub(r"^(always [^\n]*begin): \w+\n(?! *(?:integer|reg)\b)", r"\1\n", text, flags=re.M)
-    text = re.sub(r"^always @\(([^)]*)\)", _sensitivity, text, flags=re.M)
-    for name, signal in block.sigdict.items():
-        if isinstance(signal.val, EnumItemType):
-            text = _name_states(text, name, signal.val)
-    text = _drop_modulo(text, block)
-    text = _fold_constants(text)
-    text = re.sub(r"\b33'h(?=[89a-f][0-9a-f]{7}\b)", "32'h", text)  # MyHDL adds a bit for a sign that is not there
-    text = _size_words(text)
-    text = "\n".join(map(_drop_parentheses, text.splitlines()))
-    text = _declare_fields(text)
-    text = _declare_ports(text, ports, block, vocabulary)
-    text = _declare_constants(text)
-    lines = (wrapped for line in text.splitlines() for wrapped in _wrap(line.rstrip()))
-    text = re.sub(r"\n+endmodule\n*", "\n\nendmodule\n", "\n".join(lines).strip("\n") + "\n")
-    return re.sub(r"\n{3,}", "\n\n", text)
+    comments = Comments(contents.block, vocabulary, LINE_LENGTH)
+    states = [
+        signal.val
+        for signal in [*contents.signals, *contents.arriving.values()]
+        if isinstance(signal.val, EnumItemType)
+    ]
+    with states_by_name(states):
+        parts = [_part(part, contents, comments) for part in contents.parts]
+    sections = [
+        f"{header}\n\n`timescale 1ns/10ps",
+        f"{comments.purpose}module {name} (\n{_ports(contents, comments)}\n);",
+        "".join(f"localparam {constant};\n" for constant in dict.fromkeys(_constants(contents, states))),
+        "".join(_declarations(contents)),
+        "".join(_wires(contents)),
+        *(functions for _, functions in parts),
+        *(text for text, _ in parts),
+        "endmodule",
+    ]
+    text = "\n\n".join(stripped for section in sections if (stripped := section.strip("\n")))
+    text = "\n".join(wrapped for line in text.splitlines() for wrapped in _wrap(line.rstrip()))
+    return re.sub(r"\n{3,}", "\n\n", text) + "\n"
 
 
-def _size_words(text: str) -> str:
-    """Give a long constant the width of its target; MyHDL gives it the width of its value, or one bit more."""
-    widths = {name: int(high) + 1 for high, name in re.findall(r"\[(\d+):0\] (\w+);", text)}
-
-    def size(match: re.Match[str]) -> str:
-        width = widths.get(match[1], int(match[3]))
-        return f"{match[1]} {match[2]} {width}'h{match[4]};"
-
-    return re.sub(r"\b(\w+) (<?=) (\d+)'h([0-9a-f]+);", size, text)
+def number(signal: Any) -> str:
+    """Return a signal's initial value in Verilog notation."""
+    width, value = len(signal), int(signal.val)
+    if is_signed(signal):
+        return f"{'-' if value < 0 else ''}{width}'sd{abs(value)}"
+    return f"{width}'h{value:0{-(-width // 4)}x}" if width > 16 else f"{width}'d{value}"
 
 
-def _comment(text: str, process: Process, block: Block, vocabulary: Mapping[str, Any]) -> str:
-    """Put the comment above a process, if there is one, above it in the Verilog."""
-    comment = inspect.getcomments(process.funcobj)
-    if not comment:
-        return text
-    words = " ".join(line.lstrip("# ").rstrip() for line in comment.splitlines())
-    purpose = f"// {in_verilog(words, block, vocabulary)}\n"
-    label = re.escape(process.funcobj.__name__.lower())
-    text, found = re.subn(
-        rf"^(always [^\n]*begin: {label}\n)", lambda match: purpose + match[1], text, flags=re.M | re.I
-    )
-    if found:
-        return text
-    # A process that only assigns has become continuous assignments, one after the other.
-    targets = (match for match in re.finditer(r"^assign (\w+)", text, re.M) if match[1] in process.outputs)
-    first = next(targets, None)
-    return text[: first.start()] + purpose + text[first.start() :] if first else text
+def _shape(signal: SignalType) -> str:
+    """Return a declaration's sign and range."""
+    one_bit = isinstance(signal.val, bool)
+    return f"{'signed ' * is_signed(signal)}{'' if one_bit else f'[{len(signal) - 1}:0] '}"
 
 
-def _sensitivity(match: re.Match[str]) -> str:
+def _ports(contents: Contents, comments: Comments) -> str:
+    """Declare the ports, each below its comment."""
+    rows = []
+    for port in contents.ports:
+        signal = contents.arriving[port.name]
+        kind = contents.driven.get(id(signal), "wire")
+        rows.append((f"{'output' if port.output else 'input':<6} {kind:<4} {_shape(signal)}".rstrip(), port.name))
+    pad = max((len(left) for left, _ in rows), default=0)
+    above = comments.of_ports([name for _, name in rows])
+    return ",\n".join(f"{above[name]}    {left:<{pad}} {name}" for left, name in rows)
+
+
+def _constants(contents: Contents, states: Sequence[Any]) -> Iterator[str]:
+    """Yield the values of states, and of signals that never change."""
+    for state in states:
+        for name, code in states_of(state).items():
+            yield f"[{len(code) - 1}:0] {name} = {len(code)}'b{code}"
+    for signal in contents.signals:
+        if isinstance(signal, (Tied, Constant)):
+            yield f"{_shape(signal) if len(signal) > 1 else ''}{contents.text(signal)} = {number(signal)}"
+
+
+def _declarations(contents: Contents) -> Iterator[str]:
+    """Yield the declarations of signals and memories."""
+    for signal in contents.signals:
+        if not isinstance(signal, (Tied, Constant)):
+            yield f"{contents.driven.get(id(signal), 'wire')} {_shape(signal)}{contents.text(signal)};\n"
+    for name, memory in contents.memories.items():
+        kinds = (contents.driven.get(id(one)) for one in [memory, *memory])
+        if kind := next(filter(None, kinds), ""):
+            yield f"{kind} {_shape(memory[0])}{name} [0:{len(memory) - 1}];\n"
+            continue
+        yield f"reg {_shape(memory[0])} {name} [0:{len(memory) - 1}];\ninitial begin\n"
+        for index, one in enumerate(memory):
+            value = int(one.val)
+            yield f"    {name}[{index}] <= {value if 0 <= value < 1 << 30 else number(one)};\n"
+        yield "end\n"
+
+
+def _wires(contents: Contents) -> Iterator[str]:
+    """Yield the wires of fields, and the assignments of joined signals."""
+    for field in contents.fields:
+        yield f"wire {_shape(field)}{contents.text(field)} = {contents.bits(field)};\n"
+    for signal in contents.signals:
+        name = contents.text(signal)
+        if isinstance(signal, Joined):
+            # Comments stand where MyHDL's longer bounds put them, [8-1:0] for [7:0].
+            values = [
+                re.sub(r"(\d+)(?=:)", lambda high: f"{int(high[1]) + 1}-1", contents.text(part))
+                for part in signal.parts.values()
+            ]
+            longest = max(map(len, values)) + 1
+            yield f"assign {name} = {{\n"
+            for after, (field, value) in enumerate(zip(signal.parts, values, strict=True), 1):
+                yield _folded(f"    {value + ',' * (after < len(values)):{longest}}  // {field}\n")
+            yield "};\n"
+        elif isinstance(signal, ConcatSignal):
+            high = len(signal)
+            for part in operands_of(signal):
+                low = high - (1 if isinstance(part, bool) else len(part))
+                bits = f"{high - 1}:{low}" if high - low > 1 else f"{low}"
+                value = re.sub(r"^\d+'b", "'b", contents.text(part))
+                yield f"assign {name}[{bits}] = {value};\n"
+                high = low
+
+
+def _part(part: Any, contents: Contents, comments: Comments) -> tuple[str, str]:
+    """Return the Verilog of an instance, of a memory's initial contents or of a process, and of its functions."""
+    if isinstance(part, Loading):
+        name = next(name for name, memory in contents.memories.items() if memory is part.memory)
+        return f'// Initial contents of the memory.\ninitial $readmemh("{part.file}", {name});', ""
+    if isinstance(part, Instance):
+        pins = ",\n".join(f"    .{port}({contents.text(signal)})" for port, signal in part.connections.items())
+        values = ",\n".join(f"    .{name}({value})" for name, value in part.module.parameters)
+        kind = f"{part.module.name} #(\n{values}\n)" if values else part.module.name
+        return f"{kind} {part.name} (\n{pins}\n);", ""
+    text, functions = (_tidy(text, contents) for text in printed(part, _sensitivity))
+    return comments.of_process(part.function) + text.strip("\n"), functions
+
+
+def _sensitivity(names: Sequence[str]) -> str:
     """Write @* or a sorted list; MyHDL's list has the order of a Python set, which changes from run to run."""
-    names = match[1].split(", ")
     if any(name.startswith(("posedge", "negedge")) for name in names):
-        return match[0]
+        return f"@({', '.join(names)})"
     if any("[" in name for name in names):  # words of an array, which @* does not cover in every tool
-        return f"always @({', '.join(sorted(names))})"
-    return "always @*"
+        return f"@({', '.join(sorted(names))})"
+    return "@*"
 
 
-def _name_states(text: str, signal: str, state: Any) -> str:
-    """Write states by name instead of code."""
-    names: Mapping[str, str] = {code: name for name, code in state._type._codedict.items()}
-    width = state._nrbits
-    text = re.sub(rf"\b({signal} (?:==|!=|<=|=) ){width}'b([01]+)", lambda match: match[1] + names[match[2]], text)
-    constants = "".join(f"localparam [{width - 1}:0] {name} = {width}'b{code};\n" for code, name in names.items())
-    return re.sub(rf"^(reg [^\n]*\b{signal};\n)", rf"{constants}\1", text, flags=re.M)
-
-
-def _drop_modulo(text: str, block: Block) -> str:
-    """Drop the modulo of a sum if the target's width implies it: Verilog's assignment wraps around by itself."""
-    widths = {name: len(signal) for name, signal in block.sigdict.items() if signal.val is not None}
+def _tidy(text: str, contents: Contents) -> str:
+    """Drop needless arithmetic, widths and parentheses from a process."""
+    widths = {contents.text(signal): len(signal) for signal in [*contents.signals, *contents.arriving.values()]}
 
     def wrap(match: re.Match[str]) -> str:
+        """Drop the modulo of a sum if the target's width implies it: Verilog's assignment wraps around by itself."""
         fits = widths.get(match[2]) == int(match[5])
         return f"{match[1]}{match[2]}{match[3]}{match[4]};" if fits else match[0]
 
-    return re.sub(r"^( *(?:assign )?)(\w+)( <?= )\(\(([\w +*-]+)\) % \(1 << (\d+)\)\);", wrap, text, flags=re.M)
+    def size(match: re.Match[str]) -> str:
+        """Give a long constant the width of its target; MyHDL gives it the width of its value, or one bit more."""
+        return f"{match[1]}{widths.get(match[1].split()[0], int(match[2]))}'h{match[3]};"
+
+    text = re.sub(r"^( *(?:assign )?)(\w+)( <?= )\(\(([\w +*-]+)\) % \(1 << (\d+)\)\);", wrap, text, flags=re.M)
+    text = _folded(text)
+    text = re.sub(r"\b33'h(?=[89a-f][0-9a-f]{7}\b)", "32'h", text)  # MyHDL adds a bit for a sign that is not there
+    text = re.sub(r"\b(\w+ <?= )(\d+)'h([0-9a-f]+);", size, text)
+    return "\n".join(map(_drop_parentheses, text.splitlines()))
 
 
-def _fold_constants(text: str) -> str:
+def _folded(text: str) -> str:
     """Replace constant arithmetic by numbers, such as the 2 * 8 of a slice's bounds."""
     constant = r"[\d\s()*-][\d\s+()*-]*(?<=[\d)])"
-    text = re.sub(rf"\[({constant})\]", lambda match: f"[{_evaluate(match[1])}]", text)
-    text = re.sub(
-        rf"\[({constant}):({constant})\]", lambda match: f"[{_evaluate(match[1])}:{_evaluate(match[2])}]", text
-    )
-    text = re.sub(r"(?<==)(\d+-\d+)(?=;)", lambda match: str(_evaluate(match[1])), text)
-    return re.sub(r"\((\d+ (?:[+*-]|<<) \d+)\)", lambda match: str(_evaluate(match[1])), text)
-
-
-def _evaluate(expression: str) -> int:
-    def value(node: ast.expr) -> int:
-        match node:
-            case ast.Constant(value=int(number)):
-                return number
-            case ast.BinOp():
-                return _OPERATORS[type(node.op)](value(node.left), value(node.right))
-            case ast.UnaryOp():
-                return _OPERATORS[type(node.op)](value(node.operand))
-        raise ValueError(f"{expression} is not constant arithmetic")
-
-    return value(ast.parse(expression.strip(), mode="eval").body)
+    for place in (rf"(?<=\[)({constant})(?=\]|:{constant}\])", rf"(?<=\d:)({constant})(?=\])",
+                  r"(?<==)(\d+-\d+)(?=;)", r"\((\d+ (?:[+*-]|<<) \d+)\)"):  # fmt: skip
+        text = re.sub(place, lambda match: str(eval(match[1])), text)
+    return text
 
 
 def _drop_parentheses(line: str) -> str:
@@ -175,43 +217,3 @@ def _is_one_group(text: str) -> bool:
         if depth == 0:
             return index == len(text) - 1
     return False
-
-
-def _declare_ports(text: str, ports: Sequence[str], block: Block, vocabulary: Mapping[str, Any]) -> str:
-    """Declare each port once, in the module's head below its comment, and put the module's text above the head."""
-    head = re.search(r"^module (\w+) \(\n[^)]*\);\n((?://[^\n]*\n)*)", text, re.M)
-    if not head:
-        raise ValueError("no module begins as MyHDL writes it")
-    before, name, purpose, body = text[: head.start()], head[1], head[2], text[head.end() :]
-    rows = []
-    for port in ports:
-        kinds = re.findall(rf"^(input|output|wire|reg)( signed)?( \[\d+:0\])? {port};\n", body, re.M)
-        body = re.sub(rf"^(?:input|output|wire|reg)(?: signed)?(?: \[\d+:0\])? {port};\n", "", body, flags=re.M)
-        words = [kind for kind, _, _ in kinds]
-        direction, (_, sign, width) = words[0], kinds[0]
-        rows.append((f"{direction:<6} {'reg' if 'reg' in words else 'wire':<4}{sign}{width}", port))
-    pad = max(len(left) for left, _ in rows)
-    purpose, texts = split(purpose)
-    comments = commented(ports, texts, block, LINE_LENGTH, vocabulary)
-    purpose = in_verilog(purpose, block, vocabulary)
-    declarations = ",\n".join(f"{comments[port]}    {left:<{pad}} {port}" for left, port in rows)
-    return f"{before}{purpose}module {name} (\n{declarations}\n);\n{body}"
-
-
-def _declare_fields(text: str) -> str:
-    """Declare a record's field where it is sliced from its word."""
-    for name, bits in re.findall(r"^assign (\w+) = (\w+_word\[\d+(?::\d+)?\]);$", text, re.M):
-        shape = re.search(rf"^wire((?: signed)?(?: \[\d+:0\])?) {name};\n", text, re.M)
-        if shape:
-            text = text.replace(shape[0], "", 1)
-            text = text.replace(f"assign {name} = {bits};", f"wire{shape[1]} {name} = {bits};", 1)
-    return text
-
-
-def _declare_constants(text: str) -> str:
-    """Put a module's constants together above its signals."""
-    constants = "".join(re.findall(r"^localparam [^\n]*;\n", text, re.M))
-    if not constants:
-        return text
-    text = re.sub(r"^localparam [^\n]*;\n", "", text, flags=re.M)
-    return re.sub(r"^\);\n+", f");\n\n{constants}\n", text, count=1, flags=re.M)

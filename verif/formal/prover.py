@@ -194,7 +194,7 @@ def _generated(design: Configuration | Alone) -> dict[str, str]:
         else:
             directory.mkdir()
             for block in design.blocks():
-                convert_hierarchy(block, directory, "// {module}")
+                convert_hierarchy(block, directory, "// {module}", vhdl=False)
         return {path.name: path.read_text() for path in directory.glob("*.v")}
 
 

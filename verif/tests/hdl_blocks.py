@@ -105,6 +105,23 @@ def inverted(word, result):
     return (invert,)
 
 
+def _another():
+    """Return a different block with the name and ports of `inverted`."""
+
+    @block
+    def inverted(word, result):
+        @always_comb
+        def add():
+            result.next = (word + 1) % 16
+
+        return (add,)
+
+    return inverted
+
+
+another_inverted = _another()
+
+
 def converted(top, directory: Path, **options) -> dict[str, Module]:
     directory.mkdir(exist_ok=True)
     return {module.name: module for module in convert_hierarchy(top, directory, "// {module}", **options)}

@@ -4,16 +4,23 @@
 import re
 
 import numpy as np
+import pytest
 from hdl_blocks import Pair, converted, everything, everything_arguments, inverted, step
 from myhdl import ConcatSignal, always_comb, block
 
 from raycaster.hdl.hierarchy import Port
 from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import bit, signed, unconnected, unsigned
+from raycaster.hdl.signals import bit, signed, tied, unconnected, unsigned
+from raycaster.sim.simulator import find_tool
 from raycaster.verif.seeds import repeat, seed
 
 
-def test_every_kind_of_connection_works(tmp_path):
+@pytest.mark.parametrize("simulator", ["icarus", "verilator"])
+def test_every_kind_of_connection_works(simulator, tmp_path, monkeypatch):
+    """Both simulators of Verilog agree with MyHDL."""
+    for name, value in find_tool("verilator").environment.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr(Leaf, "simulator", simulator)
     leaf = Leaf(everything, everything_arguments, tmp_path)
     random = np.random.default_rng(seed())
     names = {"word": 256, "pair_high": 16, "pair_low": 16}
@@ -87,19 +94,24 @@ def passed_on(word, result):
 
 
 @block
-def side_by_side_elsewhere(pair, first, second):
-    """Connect two concatenated signals to one port of two instances; one passes it on to a submodule."""
+def side_by_side_elsewhere(pair, first, second, third, fourth):
+    """Connect joined signals, with and without a variable and constants; one instance passes its own on."""
     both = ConcatSignal(pair.high, pair.low)
+    mixed = ConcatSignal(True, pair.high(3, 0), "1010")
     one = inverted(both, first)
     two = passed_on(both, second)
+    three = inverted(mixed, third)
+    four = inverted(ConcatSignal(pair.low, tied(5, 4)), fourth)
 
-    return one, two
+    return one, two, three, four
 
 
 def test_signals_side_by_side_may_be_a_port(tmp_path):
-    leaf = Leaf(side_by_side_elsewhere, lambda: {"pair": Pair(), "first": unsigned(8), "second": unsigned(8)}, tmp_path)
+    names = ("first", "second", "third", "fourth")
+    leaf = Leaf(side_by_side_elsewhere, lambda: {"pair": Pair()} | {name: unsigned(8) for name in names}, tmp_path)
     assert [module.name for module in leaf.modules] == ["inverted", "passed_on", "side_by_side_elsewhere"]
-    assert leaf.run_both([{"pair_high": 5, "pair_low": 12}])[-1] == {"first": 0xA3, "second": 0xA3}
+    outputs = leaf.run_both([{"pair_high": 5, "pair_low": 12}])[-1]
+    assert tuple(outputs.values()) == (0xA3, 0xA3, 0x25, 0x3A)
 
 
 @block

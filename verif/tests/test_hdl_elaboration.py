@@ -1,37 +1,58 @@
 # SPDX-License-Identifier: MIT
-"""Elaboration leaves MyHDL and Python as they were, and one version of MyHDL is used."""
+"""Elaboration leaves MyHDL and Python as they were, and the parts of MyHDL that we rely on are as we know them."""
 
 import importlib.metadata
 import inspect
 import re
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import pytest
 from conftest import ROOT
-from hdl_blocks import converted, everything, everything_arguments, swap
+from hdl_blocks import converted, everything, everything_arguments, inverted, step, swap
+from myhdl import ConcatSignal, Simulation, enum, instance, intbv
 from test_project import MAY_IMPORT
 
-from raycaster.hdl.elaboration import _DEEPEST, elaboration
-from raycaster.hdl.internals import all_signals
-from raycaster.hdl.signals import bit
+from raycaster.hdl import internals
+from raycaster.hdl.elaboration import _DEEPEST, _Frame, elaboration
+from raycaster.hdl.signals import bit, unsigned
 
 
 def test_elaboration_leaves_nothing_behind():
     before = inspect.stack
     slow = [(frame[0], frame[3]) for frame in inspect.stack()][:_DEEPEST]
     lines, file = inspect.getsourcelines(swap.func), inspect.getsourcefile(swap.func)
-    known = len(all_signals)
+    known = len(internals.all_signals)
     with elaboration():
         assert inspect.stack is not before
         # MyHDL reads these parts of a frame.
-        assert [(frame[0], frame[3]) for frame in inspect.stack()] == slow
-        assert [(frame[0], frame[3]) for frame in inspect.getouterframes(inspect.currentframe())] == slow
+        for quick in (inspect.stack(), inspect.getouterframes(inspect.currentframe())):
+            assert [(getattr(frame[0], "_frame", frame[0]), frame[3]) for frame in quick] == slow
         for _ in range(2):
             assert (inspect.getsourcelines(swap.func), inspect.getsourcefile(swap.func)) == (lines, file)
         signal = bit()
-        assert all_signals[-1] is signal
+        assert internals.all_signals[-1] is signal
     assert inspect.stack is before
-    assert len(all_signals) == known
+    assert len(internals.all_signals) == known
+
+
+def test_variables_have_the_order_of_python_3_11():
+    """Those that an inner function or a comprehension reads follow the others by name; those bound later follow all."""
+
+    def function(second, first):
+        read_by_list, read_by_function, plain = 2, 3, 1
+        listed = [element + read_by_list for element in range(first)]
+        inner = lambda: read_by_function  # noqa: E731
+        frame = _Frame(sys._getframe())
+        early = list(frame.f_locals)
+        late = plain, inner
+        return early, list(frame.f_locals), listed, late
+
+    with elaboration():
+        early, late, *_ = function(1, 2)
+    assert early == ["second", "first", "plain", "listed", "inner", "frame", "read_by_function", "read_by_list"]
+    assert late == [*early, "early", "late"]
 
 
 def test_two_threads_convert_as_one_after_the_other(tmp_path):
@@ -55,11 +76,15 @@ def test_two_threads_convert_as_one_after_the_other(tmp_path):
     assert inspect.stack is before
 
 
-def test_myhdls_internals_are_imported_in_one_file():
+def test_myhdls_private_parts_are_touched_in_one_file():
+    """No other file imports a private name of MyHDL, and none in `hdl` reads another object's private attribute."""
     found = set()
     for folder in MAY_IMPORT:
         for path in (ROOT / folder).rglob("*.py"):
-            if re.search(r"^\s*(?:from|import) myhdl\.(?:_|conversion)", path.read_text(), re.M):
+            private = r"^\s*(?:from|import) myhdl\.(?:_|conversion)"
+            if folder == "hdl":
+                private += r"|(?<!\bself)(?<!\bsys)\._(?!replace\b)[a-z]"
+            if re.search(private, path.read_text(), re.M):
                 found.add(path.relative_to(ROOT).as_posix())
     assert found == {"hdl/internals.py"}
 
@@ -67,3 +92,82 @@ def test_myhdls_internals_are_imported_in_one_file():
 def test_myhdl_is_the_version_that_this_was_written_for():
     pins = [line for line in importlib.metadata.requires("raycaster") if line.startswith("myhdl")]
     assert pins == [f"myhdl=={importlib.metadata.version('myhdl')}"]
+
+
+WORD = unsigned(8)
+STATES = enum("IDLE", "BUSY", "DONE")
+PART = WORD(8, 4)
+
+
+@pytest.mark.parametrize(
+    ("kind", "value"),
+    [
+        (internals.Block, lambda: inverted(unsigned(4), unsigned(4))),
+        (internals.Process, lambda: inverted(unsigned(4), unsigned(4)).subs[0]),
+        (internals.SignalType, bit), (internals.SliceSignal, lambda: PART), (internals.ShadowSignal, lambda: PART),
+        (internals.ShadowSignal, lambda: ConcatSignal(WORD, PART)), (internals.EnumItemType, lambda: STATES.BUSY),
+    ],
+    ids=repr,
+)  # fmt: skip
+def test_classes_of_myhdl(kind, value):
+    assert isinstance(value(), kind)
+
+
+def test_parts_of_signals():
+    assert internals.bits_of(PART) == (WORD, 7, 4)
+    assert internals.bits_of(WORD(3)) == (WORD, 3, 3)
+    assert internals.slices_of(WORD)[0] is PART
+    assert internals.operands_of(ConcatSignal(True, PART)) == (True, PART)
+    assert internals.states_of(STATES.DONE) == {"IDLE": "00", "BUSY": "01", "DONE": "10"}
+
+
+def test_a_name_is_printed():
+    word, words = unsigned(4), [unsigned(4)]
+    step(bit(), word, word, words[0], bit())
+    internals.set_name(word, "a_name")
+    assert str(word) == "a_name"
+    internals.set_name(word, None)
+    assert str(word) == "0"
+
+
+def test_keywords_of_vhdl():
+    assert {"entity", "component", "out"} <= set(internals.vhdl_keywords)
+    assert "clk" not in internals.vhdl_keywords
+
+
+def test_states_have_names_for_a_time():
+    with internals.states_by_name([STATES.BUSY, STATES.IDLE]):
+        assert STATES.DONE._toVerilog() == "DONE"
+    assert STATES.DONE._toVerilog() == "2'b10"
+
+
+def test_a_signed_slice_follows_its_word():
+    word = unsigned(8)
+    part = internals.SignedSlice(word, intbv(0, min=-8, max=8), 8, 4)
+    seen = []
+
+    @instance
+    def drive():
+        word.next = 0xD5
+        yield part
+        seen.append(int(part))
+
+    Simulation(drive).run(quiet=1)
+    assert seen == [-3]
+
+
+def test_processes_are_analysed_and_printed():
+    clk, word, result = bit(), unsigned(4), unsigned(4)
+    combinational = inverted(word, result).subs[0]
+    clocked = step(clk, word, word, unsigned(4), bit()).subs[2]
+    [first, second] = internals.analysed([combinational, clocked])
+    assert (set(first.inputs), set(first.outputs)) == ({"word"}, {"result"})
+    assert first.sigdict["word"] is word
+    assert (internals.assigned(first), internals.assigned(second)) == (True, False)
+    for name, signal in {**first.sigdict, **second.sigdict, "clk": clk}.items():
+        internals.set_name(signal, name)
+    waited = []
+    texts = [internals.printed(tree, lambda names: waited.append(names) or "@here")[0] for tree in (first, second)]
+    assert texts[0].split() == ["assign", "result", "=", "(~word);"]
+    assert texts[1].startswith("\nalways @here begin\n")
+    assert waited == [["posedge clk"]]

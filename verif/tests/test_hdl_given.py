@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Given Verilog, clocks that rest, and memories that are loaded stand in a design."""
 
-import subprocess
-from pathlib import Path
-
 import pytest
+from conftest import run_tool
 from hdl_blocks import converted
 from myhdl import Signal, always, always_comb, block, intbv
 
@@ -24,22 +22,30 @@ endmodule
 """
 
 
-def adder_of(source: Path, outputs: tuple[str, ...] = ("sum",)):
-    @given_verilog(lambda: source, outputs)
-    @block
-    def adder(clk, value, sum, STEP, WIDTH):
-        return ()
+@pytest.fixture
+def adder(tmp_path):
+    """Return a function that makes a block of given Verilog."""
 
-    return adder
+    def make(text: str = ADDER, outputs: tuple[str, ...] = ("sum",)):
+        source = tmp_path / "given.v"
+        source.write_text(text)
+
+        @given_verilog(lambda: source, outputs)
+        @block
+        def adder(clk, value, sum, STEP, WIDTH):
+            return ()
+
+        return adder
+
+    return make
 
 
 @block
-def two_adders(clk, value, first, second, doubled, adder):
-    """Chain two instances of given Verilog and read the first sum in a process."""
-    one = adder(clk, value, first, STEP=3, WIDTH=4)
-    two = adder(clk, first, second, STEP=3, WIDTH=4)
+def two_adders(clk, value, first, second, doubled, adder, other, steps):
+    """Chain two instances, and read the first sum in a process."""
+    one = adder(clk, value, first, STEP=steps[0], WIDTH=4)
+    two = other(clk, first, second, STEP=steps[1], WIDTH=4)
 
-    # A process reads an output of given Verilog.
     @always_comb
     def double():
         doubled.next = first + first
@@ -47,41 +53,27 @@ def two_adders(clk, value, first, second, doubled, adder):
     return one, two, double
 
 
-def two_adders_of(adder):
-    return two_adders(bit(), unsigned(4), unsigned(4), unsigned(4), unsigned(5), adder)
+def arguments(adder, other=None, steps=(3, 3)) -> dict:
+    words = {name: unsigned(4) for name in ("value", "first", "second")}
+    return {"clk": bit(), **words, "doubled": unsigned(5), "adder": adder, "other": other or adder, "steps": steps}
 
 
-def test_given_verilog_stands_in_the_design_as_it_is(tmp_path):
-    source = tmp_path / "given.v"
-    source.write_text(ADDER)
-    modules = converted(two_adders_of(adder_of(source)), tmp_path / "verilog")
-    assert list(modules) == ["adder", "two_adders"], "two instances with equal parameters share a module"
-    assert modules["adder"].path.read_text() == ADDER
-    assert modules["adder"].parameters == (("STEP", "3"), ("WIDTH", "4"))
-    assert modules["adder"].ports == (
+@pytest.mark.parametrize(("steps", "sums"), [((3, 3), (8, 11, 16)), ((3, 4), (8, 12, 16))])
+def test_given_verilog_stands_in_the_design_as_it_is(adder, steps, sums, tmp_path):
+    """Instances with equal or different parameters share the file, and a process reads an output of it."""
+    given = adder()
+    leaf = Leaf(two_adders, lambda: arguments(given, steps=steps), tmp_path)
+    first, top = leaf.modules
+    assert first.path.read_text() == ADDER
+    assert (first.name, first.parameters) == ("adder", (("STEP", "3"), ("WIDTH", "4")))
+    assert first.ports == (
         Port("clk", 1, False, False), Port("value", 4, False, False), Port("sum", 4, False, True),
     )  # fmt: skip
-    assert modules["two_adders"].instances == {"adder_0": "adder", "adder_1": "adder"}
-    text = modules["two_adders"].path.read_text()
-    assert "adder #(\n    .STEP(3),\n    .WIDTH(4)\n) adder_0_i (\n    .clk(clk),\n    .value(value)," in text
-    (tmp_path / "bench.v").write_text(
-        """module bench;
-reg clk = 0;
-wire [3:0] first, second;
-wire [4:0] doubled;
-two_adders dut (.clk(clk), .value(4'd5), .first(first), .second(second), .doubled(doubled));
-initial begin
-    repeat (4) #1 clk = ~clk;
-    $display("%0d %0d %0d", first, second, doubled);
-end
-endmodule
-"""
-    )
-    files = [str(module.path) for module in modules.values()]
-    compiled = str(tmp_path / "bench")
-    subprocess.run(["iverilog", "-g2005", "-o", compiled, str(tmp_path / "bench.v"), *files], check=True)
-    done = subprocess.run(["vvp", "-n", compiled], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["8", "11", "16"]
+    assert (top.name, top.instances) == ("two_adders", {"adder_0": "adder", "adder_1": "adder"})
+    for number, step_by in enumerate(steps):
+        head = f"adder #(\n    .STEP({step_by}),\n    .WIDTH(4)\n) adder_{number}_i (\n    .clk(clk),\n    .value("
+        assert head in top.path.read_text()
+    assert tuple(leaf.run_verilog([{"value": 5}] * 3)[-1].values()) == sums
 
 
 @block
@@ -106,8 +98,7 @@ def two_clocks(clk, awake, value, steady, resting):
 
 
 def two_clocks_arguments():
-    nibbles = {name: unsigned(4) for name in ("value", "steady", "resting")}
-    return {"clk": bit(), "awake": bit(), **nibbles}
+    return {"clk": bit(), "awake": bit()} | {name: unsigned(4) for name in ("value", "steady", "resting")}
 
 
 RESTING_BENCH = """`timescale 1ns / 1ns
@@ -120,13 +111,11 @@ two_clocks dut (.clk(clk), .awake(awake), .value(value), .steady(steady), .resti
 realtime rose;
 always @(posedge dut.resting_clk) rose = $realtime;
 always @(negedge dut.resting_clk)
-    if ($realtime > 0 && $realtime - rose != 5)
-        $display("a pulse of %0d ns", $realtime - rose);
+    if ($realtime > 0 && $realtime - rose != 5) $display("a pulse of %0d ns", $realtime - rose);
 // Awake in cycles 2, 3 and 5 of 8, changing just after an edge, as a register does.
 initial begin
     for (cycle = 0; cycle < 8; cycle = cycle + 1) begin
-        #1 value = cycle;
-        awake = cycle == 2 || cycle == 3 || cycle == 5;
+        #1 value = cycle; awake = cycle == 2 || cycle == 3 || cycle == 5;
         #4 clk = 0;
         #5 clk = 1;
     end
@@ -145,95 +134,57 @@ endmodule
     ],
 )
 def test_a_clock_rests(tmp_path, options, follows, said):
-    modules = converted(two_clocks(**two_clocks_arguments()), tmp_path / "verilog")
+    modules = converted(two_clocks(**two_clocks_arguments()), tmp_path)
     gate = modules["clock_gate"].path
     gate.write_text(gate.read_text().replace("if (!clk)", f"if ({follows})"))
     (tmp_path / "bench.v").write_text(RESTING_BENCH)
-    files = [str(module.path) for module in modules.values()]
-    compiled = str(tmp_path / "bench")
-    subprocess.run(["iverilog", "-g2005", *options, "-o", compiled, str(tmp_path / "bench.v"), *files], check=True)
-    done = subprocess.run(["vvp", "-n", compiled], capture_output=True, text=True, check=True)
-    lines = done.stdout.splitlines()
+    files = [module.path.name for module in modules.values()]
+    run_tool(tmp_path, "iverilog", "-g2005", *options, "-o", "bench", "bench.v", *files)
+    lines = run_tool(tmp_path, "vvp", "-n", "bench").stdout.splitlines()
     assert set(said) <= set(lines), lines
     assert len(said) > 1 or lines == said
 
 
 def test_a_clock_that_rests_goes_on_in_myhdl(tmp_path):
     leaf = Leaf(two_clocks, two_clocks_arguments, tmp_path)
-    stimulus = [{"awake": value % 2, "value": value} for value in range(16)]
-    outputs = leaf.run_both(stimulus, settled=1)
+    outputs = leaf.run_both([{"awake": value % 2, "value": value} for value in range(16)], settled=1)
     assert [cycle["resting"] for cycle in outputs[1:]] == [cycle["steady"] for cycle in outputs[1:]] == [*range(15)]
 
 
 @block
-def adders(clk, value, first, second, one_adder, other_adder, steps):
-    one = one_adder(clk, value, first, STEP=steps[0], WIDTH=4)
-    two = other_adder(clk, value, second, STEP=steps[1], WIDTH=4)
+def ours(clk, value, sum, STEP=1, WIDTH=4, given=hold):
+    """Contain the given block, or a register."""
+    inner = given(clk, value, sum, **({} if given is hold else {"STEP": STEP, "WIDTH": WIDTH}))
 
-    return one, two
-
-
-def adders_of(one_adder, other_adder, steps=(3, 4)):
-    return adders(bit(), unsigned(4), unsigned(4), unsigned(4), one_adder, other_adder, steps)
+    return (inner,)
 
 
-def test_given_verilog_takes_two_sets_of_parameters(tmp_path):
-    source = tmp_path / "given.v"
-    source.write_text(ADDER)
-    adder = adder_of(source)
-    modules = converted(adders_of(adder, adder), tmp_path / "verilog")
-    assert list(modules) == ["adder", "adders"]
-    text = modules["adders"].path.read_text()
-    for number, step_by in enumerate((3, 4)):
-        assert f"adder #(\n    .STEP({step_by}),\n    .WIDTH(4)\n) adder_{number}_i (" in text
+ours.func.__name__ = "adder"
 
 
-def test_given_verilog_keeps_its_name(tmp_path):
-    source = tmp_path / "given.v"
-    source.write_text(ADDER)
-
-    @block
-    def adder(clk, value, sum, STEP, WIDTH):
-        @always(clk.posedge)
-        def work():
-            sum.next = value
-
-        return (work,)
-
-    given = adder_of(source)
-    modules = converted(adders_of(given, adder), tmp_path / "verilog")
-    assert modules["adders"].instances == {"adder_0": "adder", "adder_1": "adder_1"}
+def test_given_verilog_keeps_its_name(adder, tmp_path):
+    given = adder()
+    modules = converted(two_adders(**arguments(given, ours)), tmp_path / "verilog")
+    assert modules["two_adders"].instances == {"adder_0": "adder", "adder_1": "adder_1"}
     assert modules["adder"].path.read_text() == ADDER
-    for others in ((adder, given), (given, adder_of(source))):
-        with pytest.raises(UserError, match="adder is the name of given Verilog, which stays, and of"):
-            converted(adders_of(*others), tmp_path / "verilog")
 
 
-def test_a_top_does_not_take_the_name_of_given_verilog(tmp_path):
-    source = tmp_path / "given.v"
-    source.write_text(ADDER)
-    given = adder_of(source)
-
-    @block
-    def adder(clk, value, sum):
-        inner = given(clk, value, sum, STEP=1, WIDTH=4)
-        return (inner,)
-
-    with pytest.raises(UserError, match="adder is the name of given Verilog, which stays"):
-        converted(adder(bit(), unsigned(4), unsigned(4)), tmp_path / "verilog")
-
-
-def test_given_verilog_has_its_module(tmp_path):
-    source = tmp_path / "given.v"
-    source.write_text(ADDER.replace("module adder", "module adders"))
-    with pytest.raises(UserError, match=r"given\.v has no module adder"):
-        converted(two_adders_of(adder_of(source)), tmp_path / "verilog")
-
-
-def test_an_output_of_given_verilog_must_be_an_argument(tmp_path):
-    adder = adder_of(tmp_path / "given.v", ("sum", "carry"))
-    with pytest.raises(UserError, match=r"adder: carry is listed as an output, but no argument"):
-        converted(two_adders_of(adder), tmp_path / "verilog")
+@pytest.mark.parametrize(
+    ("design", "said"),
+    [
+        (lambda make: two_adders(**arguments(ours, make())), "adder is the name of given Verilog, which stays, and of"),
+        (lambda make: two_adders(**arguments(make(), make())), "adder is the name of given Verilog, which stays, and"),
+        (lambda make: ours(bit(), unsigned(4), unsigned(4), given=make()), "adder is the name of given Verilog"),
+        (lambda make: two_adders(**arguments(make(ADDER.replace("module adder", "module adders")))),
+         r"given\.v has no module adder"),
+        (lambda make: two_adders(**arguments(make(outputs=("sum", "carry")))),
+         "adder: carry is listed as an output, but no argument"),
+    ],
+    ids=["ours-first", "given-twice", "top", "module", "output"],
+)  # fmt: skip
+def test_wrong_use_of_given_verilog_is_refused(design, said, adder, tmp_path):
+    with pytest.raises(UserError, match=said):
+        converted(design(adder), tmp_path / "verilog")
 
 
 @block
@@ -251,13 +202,10 @@ def word_table(clk, index, word, values, file):
 
 
 def test_a_memory_holds_a_files_words(tmp_path):
-    values, file = [7, 250, 0, 99], tmp_path / "words.hex"
-    file.write_text("".join(f"{value:x}\n" for value in values))
-    leaf = Leaf(
-        word_table,
-        lambda: {"clk": bit(), "index": unsigned(2), "word": unsigned(8), "values": values, "file": str(file)},
-        tmp_path,
-    )
+    file = tmp_path / "words.hex"
+    file.write_text("7\nfa\n0\n63\n")
+    words = {"values": [7, 250, 0, 99], "file": str(file)}
+    leaf = Leaf(word_table, lambda: {"clk": bit(), "index": unsigned(2), "word": unsigned(8), **words}, tmp_path)
     outputs = leaf.run_both([{"index": index} for index in (3, 0, 1, 2, 0)], settled=1)
     assert [output["word"] for output in outputs[1:]] == [99, 7, 250, 0]
     text = leaf.verilog[-1].read_text()

@@ -6,7 +6,7 @@ import runpy
 from textwrap import indent
 
 import pytest
-from hdl_blocks import Pair, converted, step
+from hdl_blocks import Pair, another_inverted, converted, step
 from myhdl import always, block
 
 from raycaster.hdl.errors import UserError
@@ -14,33 +14,16 @@ from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, unconnected, unsigned
 
 
-def another_step():
-    """Return a different block with the name and ports of `step`."""
-
-    @block
-    def step(clk, value, step_by, stepped, wrapped, gain=1):
-        @always(clk.posedge)
-        def keep():
-            stepped.next = value ^ step_by
-            wrapped.next = False
-
-        return (keep,)
-
-    return step
-
-
 def test_the_top_keeps_its_name(tmp_path):
-    inner = another_step()
-
     @block
-    def step(clk, value, by, result):
-        part = inner(clk, value, by, result, unconnected(1))
+    def inverted(word, result):
+        part = another_inverted(word, result)
         return (part,)
 
-    modules = converted(step(bit(), unsigned(4), unsigned(4), unsigned(4)), tmp_path)
-    assert list(modules) == ["step_1", "step"]
-    assert modules["step"].instances == {"step": "step_1"}
-    assert re.search(r"^step_1 step_i \($", modules["step"].path.read_text(), re.M)
+    modules = converted(inverted(unsigned(4), unsigned(4)), tmp_path)
+    assert list(modules) == ["inverted_1", "inverted"]
+    assert modules["inverted"].instances == {"inverted": "inverted_1"}
+    assert re.search(r"^inverted_1 inverted_i \($", modules["inverted"].path.read_text(), re.M)
 
 
 def test_two_instances_of_one_name_are_refused(tmp_path):
@@ -100,13 +83,36 @@ CROSSED = "crossed = Pair()\ncrossing = swap(pair, crossed)\n"
     ids=["port", "passed-port", "word", "field", "port-and-field", "port-and-port", "memory", "instance", "between"],
 )  # fmt: skip
 def test_two_things_of_one_verilog_name_are_refused(ports, name, body, tmp_path):
-    source = tmp_path / "clash.py"
+    with pytest.raises(UserError, match=rf"clash\.py:\d+: clash: two things would be called {name} in Verilog; rename"):
+        convert_text("clash", ", ".join(ports.split()), body, [PORTS[port]() for port in ports.split()], tmp_path)
+
+
+def convert_text(name: str, ports: str, body: str, signals: list, directory) -> None:
+    """Convert a block from its text."""
+    source = directory / "clash.py"
     source.write_text(
         "from hdl_blocks import Pair, step, swap\n"
-        "from myhdl import always, always_comb, block, instances\n"
+        "from myhdl import Signal, always, always_comb, block, instances\n"
         "from raycaster.hdl.signals import unconnected, unsigned\n\n\n"
-        f"@block\ndef clash({', '.join(ports.split())}):\n{indent(body, '    ')}    return instances()\n"
+        f"@block\ndef {name}({ports}):\n{indent(body, '    ')}    return instances()\n"
     )
-    clash = runpy.run_path(str(source))["clash"]
-    with pytest.raises(UserError, match=rf"clash\.py:\d+: clash: two things would be called {name} in Verilog; rename"):
-        converted(clash(*(PORTS[port]() for port in ports.split())), tmp_path)
+    converted(runpy.run_path(str(source))[name](*signals), directory)
+
+
+@pytest.mark.parametrize(
+    ("name", "port", "said"),
+    [
+        ("buf", "word", "buf is a keyword of Verilog"), ("top", "reg", "reg is a keyword of Verilog"),
+        ("top", "logic", "logic is a keyword of Verilog"), ("top", "Entity", "Entity is a keyword of VHDL"),
+        ("Process", "word", "Process is a keyword of VHDL"),
+    ],
+)  # fmt: skip
+def test_keywords_are_no_names(name, port, said, tmp_path):
+    with pytest.raises(UserError, match=rf"clash\.py:\d+: {name}: {said}; rename it"):
+        convert_text(name, f"{port}, result", RESULT.format(port), [unsigned(4), unsigned(4)], tmp_path)
+
+
+def test_a_signal_without_a_width_is_refused(tmp_path):
+    body = "count = Signal(0)\n" + REGISTER.format("count", "word") + RESULT.format("count")
+    with pytest.raises(UserError, match=r"clash\.py:8: top: count has no width; write intbv"):
+        convert_text("top", "clk, word, result", body, [bit(), unsigned(4), unsigned(4)], tmp_path)

@@ -1,118 +1,16 @@
 # SPDX-License-Identifier: MIT
 """Blocks whose arguments differ are modules that differ; equal ones share a module."""
 
+from itertools import product
+
 import numpy as np
 import pytest
-from hdl_blocks import Pair, inverted, step
-from myhdl import always, always_comb, block
+from hdl_blocks import Pair, another_inverted, inverted
+from myhdl import ResetSignal, Signal, always_comb, always_seq, block, intbv
 
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.records import Interface, Record
-from raycaster.hdl.signals import bit, unconnected, unsigned
-
-
-def another_step():
-    """Return a different block with the name and ports of `step`."""
-
-    @block
-    def step(clk, value, step_by, stepped, wrapped, gain=1):
-        @always(clk.posedge)
-        def keep():
-            stepped.next = value ^ step_by
-            wrapped.next = False
-
-        return (keep,)
-
-    return step
-
-
-@block
-def two_kinds(clk, value, by, first, second, other):
-    """Instantiate two different blocks named `step`."""
-    ours = step(clk, value, by, first, unconnected(1))
-    theirs = other(clk, value, by, second, unconnected(1))
-
-    return ours, theirs
-
-
-def test_two_blocks_of_one_name_are_two_modules(tmp_path):
-    other = another_step()
-    leaf = Leaf(
-        two_kinds,
-        lambda: {
-            "clk": bit(), "value": unsigned(4), "by": unsigned(4), "first": unsigned(4), "second": unsigned(4),
-            "other": other,
-        },
-        tmp_path,
-    )  # fmt: skip
-    assert leaf.modules[-1].instances == {"step_0": "step", "step_1": "step_1"}
-    assert leaf.run_both([{"value": 6, "by": 3}] * 4, settled=3)[-1] == {"first": 9, "second": 5}
-
-
-class Mirrored(Pair):
-    """Pair that a block can recognise by its class."""
-
-
-@block
-def halve(pair, half):
-    """Select the high nibble, or the low one of a `Mirrored`."""
-    chosen = pair.low if isinstance(pair, Mirrored) else pair.high
-
-    @always_comb
-    def choose():
-        half.next = chosen
-
-    return (choose,)
-
-
-@block
-def halve_both(pair, mirrored, first, second):
-    """Halve a pair of each class."""
-    one = halve(pair, first)
-    other = halve(mirrored, second)
-
-    return one, other
-
-
-def test_interfaces_of_different_classes_make_two_modules(tmp_path):
-    leaf = Leaf(
-        halve_both,
-        lambda: {"pair": Pair(), "mirrored": Mirrored(), "first": unsigned(4), "second": unsigned(4)},
-        tmp_path,
-    )
-    assert [module.name for module in leaf.modules] == ["halve", "halve_1", "halve_both"]
-    assert leaf.run_both([{"pair_high": 3, "mirrored_low": 12}])[-1] == {"first": 3, "second": 12}
-
-
-@block
-def mix(clk, left, right, mixed):
-    """Mix two ports that the conversion might confuse."""
-
-    @always(clk.posedge)
-    def work():
-        mixed.next = left ^ right
-
-    return (work,)
-
-
-@block
-def mixes(clk, value, other, first, second):
-    """Connect one signal to both ports, and then two signals."""
-    alike = mix(clk, value, value, first)
-    apart = mix(clk, value, other, second)
-
-    return alike, apart
-
-
-def test_one_signal_at_two_ports_is_no_module_for_two(tmp_path):
-    leaf = Leaf(
-        mixes,
-        lambda: {
-            "clk": bit(), "value": unsigned(4), "other": unsigned(4), "first": unsigned(4), "second": unsigned(4),
-        },
-        tmp_path,
-    )  # fmt: skip
-    assert leaf.run_both([{"value": 9, "other": 5}] * 3, settled=2)[-1] == {"first": 0, "second": 12}
+from raycaster.hdl.signals import Signed, bit, signed, unsigned
 
 
 class Mode:
@@ -125,57 +23,82 @@ class Mode:
         return "a mode"
 
 
-@block
-def offset(clk, value, moved, mode):
-    """value + mode, modulo the width of the result."""
-    step_by = mode.number if isinstance(mode, Mode) else mode if isinstance(mode, int) else int(mode[len(mode) // 2])
-    limit = 1 << len(moved)
+class Late(Interface):
+    """A signal and a constant to add to it."""
 
-    @always(clk.posedge)
+    def __init__(self, value, amount):
+        self.value, self.amount = value, amount
+
+
+def number_of(value, amount) -> int:
+    """Return a number that depends on everything that may distinguish two arguments."""
+    if isinstance(amount, Mode):
+        return amount.number
+    if isinstance(amount, np.ndarray):
+        return int(amount[len(amount) // 2])
+    return (value.max or 0) + (len(amount) if isinstance(amount, tuple) else 2 * amount + isinstance(amount, bool))
+
+
+@block
+def offset(clk, reset, late, moved):
+    """moved = value + a number from the arguments, modulo 256."""
+    step_by, value = number_of(late.value, late.amount), late.value
+
+    @always_seq(clk.posedge, reset=reset)
     def work():
-        moved.next = (value + step_by) % limit
+        moved.next = (value + step_by) % 256
 
     return (work,)
 
 
 @block
-def offsets(clk, value, first, second, modes):
+def offsets(clk, reset, other_reset, late, later, first, second):
     """Apply two offsets."""
-    one = offset(clk, value, first, modes[0])
-    two = offset(clk, value, second, modes[1])
+    one = offset(clk, reset, late, first)
+    two = offset(clk, other_reset, later, second)
 
     return one, two
 
 
 ONE = Mode(1)
 PEAK = np.eye(1, 3000, 1500)[0]
+AMOUNTS = [(1, 1), (1, 2), (1, True), (0, False), (ONE, ONE), (ONE, Mode(2)), (PEAK, 2 * PEAK), ((0, 0), (0, 0)),
+           ((0, 0), (0, 0, 0)), ((1, 0), (True, 0)), (1, Signed(1))]  # fmt: skip
+RANGES = [lambda: unsigned(4), lambda: Signal(intbv(0, min=0, max=10)), bit, lambda: unsigned(1), lambda: signed(4)]
+PLAIN = {"amounts": (1, 1), "ranges": RANGES[:1] * 2, "initial": (0, 0), "active": (1, 1)}
 
 
 @pytest.mark.parametrize(
-    ("modes", "widths", "apart", "moved"),
-    [
-        pytest.param((1, 1), (4, 4), False, [0, 0], id="equal"),
-        pytest.param((1, 2), (4, 4), True, [0, 1], id="numbers"),
-        pytest.param((1, True), (4, 4), True, [0, 0], id="types"),
-        pytest.param((1, 1), (4, 5), True, [0, 16], id="widths"),
-        pytest.param((ONE, ONE), (4, 4), False, [0, 0], id="one-object"),
-        pytest.param((ONE, Mode(2)), (4, 4), True, [0, 1], id="objects-that-read-alike"),
-        pytest.param((PEAK, 2 * PEAK), (4, 4), True, [0, 1], id="arrays-that-read-alike"),
-    ],
+    ("differing", "values", "apart"),
+    [("amounts", amounts, number not in (0, 4, 7)) for number, amounts in enumerate(AMOUNTS)]
+    + [("ranges", pair, pair[0] is not pair[1]) for pair in product(RANGES, repeat=2)]
+    + [("initial", (3, 3), False), ("initial", (3, 5), True), ("active", (0, 0), False), ("active", (1, 0), True)],
 )
-def test_parameters_and_widths_that_differ_make_modules_that_differ(modes, widths, apart, moved, tmp_path):
-    words = dict(zip(("first", "second"), widths, strict=True))
-    leaf = Leaf(
-        offsets,
-        lambda: {
-            "clk": bit(), "value": unsigned(4), **{name: unsigned(width) for name, width in words.items()},
-            "modes": modes,
-        },
-        tmp_path,
-    )  # fmt: skip
+def test_arguments_that_differ_make_modules_that_differ(differing, values, apart, tmp_path):
+    amounts, ranges, initial, active = (PLAIN | {differing: values}).values()
+
+    def arguments() -> dict:
+        resets = (ResetSignal(0, active=level, isasync=False) for level in active)
+        lates = (Late(make(), amount) for make, amount in zip(ranges, amounts, strict=True))
+        moved = (Signal(intbv(value)[8:]) for value in initial)
+        names = ("clk", "reset", "other_reset", "late", "later", "first", "second")
+        return dict(zip(names, (bit(), *resets, *lates, *moved), strict=True))
+
+    leaf = Leaf(offsets, arguments, tmp_path)
     assert leaf.modules[-1].instances == {"offset_0": "offset", "offset_1": "offset_1" if apart else "offset"}
     assert [module.name for module in leaf.modules] == ["offset", *["offset_1"] * apart, "offsets"]
-    assert list(leaf.run_both([{"value": 15}] * 3, settled=2)[-1].values()) == moved
+    stimulus = [
+        {"reset": active[0] ^ off, "other_reset": active[1] ^ off, "late_value": 1, "later_value": 1}
+        for off in (0, 1, 1)
+    ]
+    outputs = leaf.run_both(stimulus, settled=1)
+    assert tuple(outputs[1].values()) == initial
+    expected = (1 + number_of(make(), amount) for make, amount in zip(ranges, amounts, strict=True))
+    assert tuple(outputs[2].values()) == tuple(expected)
+
+
+class Mirrored(Pair):
+    """Pair that a block can recognise by its class."""
 
 
 class Halves(Record):
@@ -185,64 +108,73 @@ class Halves(Record):
         super().__init__({"high": high, "low": 8 - high})
 
 
-class Late(Interface):
-    """A nibble and a constant to add to it."""
-
-    def __init__(self, amount: int):
-        self.value, self.amount = unsigned(4), amount
-
-
 @block
-def upper_part(halves, late, high, sum):
-    """Read a field of a layout, and an attribute that is not a signal."""
-    amount = late.amount
+def mix(left, right, mixed):
+    """Mix two ports that the conversion might confuse."""
 
     @always_comb
-    def cut():
-        high.next = halves.high
+    def work():
+        mixed.next = left ^ right
+
+    return (work,)
+
+
+@block
+def chosen_part(group, part):
+    """Select the low half of a `Mirrored`, and the high half of anything else."""
+    chosen = group.low if isinstance(group, Mirrored) else group.high
 
     @always_comb
-    def add():
-        sum.next = (late.value + amount) % 16
+    def choose():
+        part.next = chosen
 
-    return cut, add
-
-
-@block
-def upper_parts(halves, others, late, later, high, higher, sum, more):
-    """Connect ports of the same shape with different layouts and attributes."""
-    one = upper_part(halves, late, high, sum)
-    two = upper_part(others, later, higher, more)
-
-    return one, two
+    return (choose,)
 
 
-@pytest.mark.parametrize(("cuts", "amounts"), [((3, 5), (1, 1)), ((4, 4), (1, 2))])
-def test_layouts_and_attributes_of_interfaces_distinguish_modules(cuts, amounts, tmp_path):
-    leaf = Leaf(
-        upper_parts,
-        lambda: {
-            "halves": Halves(cuts[0]), "others": Halves(cuts[1]), "late": Late(amounts[0]), "later": Late(amounts[1]),
-            "high": unsigned(8), "higher": unsigned(8), "sum": unsigned(4), "more": unsigned(4),
-        },
-        tmp_path,
-    )  # fmt: skip
-    [outputs] = leaf.run_both(
-        [{"halves_high": 6, "halves_low": 1, "others_high": 9, "others_low": 1, "late_value": 3, "later_value": 3}]
-    )
-    assert outputs == {"high": 6, "higher": 9, "sum": 3 + amounts[0], "more": 3 + amounts[1]}
+class Inputs(Interface):
+    """Arguments, of which only those that are used become ports."""
+
+    def __init__(self):
+        self.value, self.other, self.pair, self.mirrored = unsigned(4), unsigned(4), Pair(), Mirrored()
+        self.halves, self.same, self.thin = Halves(4), Halves(4), Halves(2)
+
+
+KINDS = {
+    "one signal at two ports": lambda x: ((mix, x.value, x.value), (mix, x.value, x.other)),
+    "classes": lambda x: ((chosen_part, x.pair), (chosen_part, x.mirrored)),
+    "layouts": lambda x: ((chosen_part, x.halves), (chosen_part, x.thin)),
+    "equal layouts": lambda x: ((chosen_part, x.halves), (chosen_part, x.same)),
+    "fields": lambda x: ((inverted, x.halves.high), (inverted, x.halves.low)),
+    "blocks of one name": lambda x: ((inverted, x.value), (another_inverted, x.value)),
+}
 
 
 @block
-def fields_apart(packed, first, second):
-    """Connect a different field to each of two instances."""
-    one = inverted(packed.high, first)
-    two = inverted(packed.low, second)
+def in_pairs(inputs, first, second, kind):
+    """Instantiate a block twice, or two blocks, with arguments that differ in one thing."""
+    (one, *ones), (two, *twos) = KINDS[kind](inputs)
+    some, others = one(*ones, first), two(*twos, second)
 
-    return one, two
+    return some, others
 
 
-def test_fields_of_one_shape_are_no_two_modules(tmp_path):
-    leaf = Leaf(fields_apart, lambda: {"packed": Halves(4), "first": unsigned(4), "second": unsigned(4)}, tmp_path)
-    assert [module.name for module in leaf.modules] == ["inverted", "fields_apart"]
-    assert leaf.run_both([{"packed_high": 5, "packed_low": 12}])[-1] == {"first": 10, "second": 3}
+@pytest.mark.parametrize(
+    ("kind", "modules", "inputs", "outputs"),
+    [
+        ("one signal at two ports", ["mix", "mix_1"], {"value": 9, "other": 5}, [0, 12]),
+        ("classes", ["chosen_part", "chosen_part_1"], {"pair_high": 3, "mirrored_low": 12}, [3, 12]),
+        ("layouts", ["chosen_part", "chosen_part_1"], {"halves_high": 6, "thin_high": 2}, [6, 2]),
+        ("equal layouts", ["chosen_part"], {"halves_high": 6, "same_high": 9}, [6, 9]),
+        ("fields", ["inverted"], {"halves_high": 5, "halves_low": 12}, [10, 3]),
+        ("blocks of one name", ["inverted", "inverted_1"], {"value": 6}, [9, 7]),
+    ],
+)
+def test_what_makes_two_modules(kind, modules, inputs, outputs, tmp_path):
+    def arguments() -> dict:
+        return {"inputs": Inputs(), "first": unsigned(4), "second": unsigned(4), "kind": kind}
+
+    leaf = Leaf(in_pairs, arguments, tmp_path)
+    assert [module.name for module in leaf.modules] == [*modules, "in_pairs"]
+    assert list(leaf.modules[-1].instances.values()) == [modules[0], modules[-1]]
+    stimulus = {f"inputs_{name}": value for name, value in inputs.items()}
+    assert list(leaf.run_both([stimulus])[-1].values()) == outputs

@@ -32,6 +32,7 @@ def test_the_generated_parts_of_the_manual_are_current():
 DECLARED = {
     "memory": "memory = [Signal(intbv(0)[4:]) for _ in range(4)]\n@always(clk.posedge)\ndef fill():\n"
     "    memory[index].next = a\n",
+    "offset": "offset = Constant(intbv(-3, min=-8, max=8))\n",
     "step": "step = signed(4)\n@always(clk.posedge)\ndef turn():\n    step.next = a[3:]\n",
 }
 """Signals of a process, declared if it has their name."""
@@ -74,9 +75,16 @@ def test_other_wrong_forms_are_refused(statements, tmp_path):
     [
         ("nothing = unsigned(4)\nadding = add(a, nothing, result, unconnected(1))\n", "nothing: Signal is not driven"),
         ("lost = bit()\n" + process("lost.next = a[0]\nresult.next = b"), "lost: Signal is driven but not read"),
+        ("fixed = tied(0, 4)\nadding = add(a, b, fixed, unconnected(1))\n", "fixed is a slice or a constant"),
+        ("adding = add(a, b, result, unconnected(1))\n" + process("result.next = a"), "result has two drivers"),
+        ("both = [a, b]\n" + process("result.next = both[index]"), "a process indexes both, but both[0] is also a"),
+        (
+            "mixed = [unsigned(4), unsigned(3)]\n" + process("result.next = mixed[index]"),
+            "a process indexes mixed, whose",
+        ),
     ],
 )
-def test_a_signal_without_a_driver_or_reader_is_refused(body, reason, tmp_path):
+def test_a_signal_that_cannot_be_printed_is_refused(body, reason, tmp_path):
     assert refusal_of(body, tmp_path)[1].startswith(reason)
 
 
@@ -96,6 +104,7 @@ def test_a_signal_without_a_driver_or_reader_is_refused(body, reason, tmp_path):
         "result.next = a[4:2] * b[2:] + index - a[4:2] * b[2:]",
         "result.next = memory[index]",
         "result.next = a ^ intbv(5)[4:]",
+        "result.next = (a[2:] + offset + 8) % 16",
         "result.next = a[3:].signed() == step",
         "result.next = step + step < step - 1",
         "if (a < b) and not (a == 3):\n    result.next = concat(a[3:], b[3])\nelse:\n    result.next = index",
