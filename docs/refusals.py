@@ -147,6 +147,17 @@ REFUSALS = (
             _process("result.next = a ^ nothing", "nothing = tied(0, 4)\n")),
     Refusal("two drivers", "one = add(a, b, result, unconnected(1))\ntwo = add(a, index, result, unconnected(1))\n",
             "one = add(a, b, result, unconnected(1))\ntwo = add(a, index, unconnected(4), unconnected(1))\n"),
+    Refusal("driven constant", "part = tied(0, 4)  # refused\none = add(a, index, part, unconnected(1))\n"
+            + _process("result.next = a ^ part"),
+            "part = unsigned(4)\none = add(a, index, part, unconnected(1))\n" + _process("result.next = a ^ part")),
+    Refusal("width", _process("result.next = a ^ count", "count = Signal(intbv(0))  # refused\n"
+            "@always(clk.posedge)\ndef keep_count():\n    count.next = b\n"),
+            _process("result.next = a ^ count", "count = Signal(intbv(0)[4:])\n"
+            "@always(clk.posedge)\ndef keep_count():\n    count.next = b\n")),
+    Refusal("list", _process("result.next = mixed[index[0]]", "mixed = [unsigned(4), unsigned(2)]  # refused\n"
+            "@always(clk.posedge)\ndef fill():\n    mixed[0].next = a\n    mixed[1].next = index\n"),
+            _process("result.next = mixed[index[0]]", "mixed = [unsigned(4), unsigned(4)]\n"
+            "@always(clk.posedge)\ndef fill():\n    mixed[0].next = a\n    mixed[1].next = index\n")),
     Refusal("unread", "carry = bit()  # refused\nadding = add(a, b, result, carry)\n",
             "adding = add(a, b, result, unconnected(1))\n"),
     Refusal("slices", _process("for i in range(2):\n    result.next[i] = halves[i][0]",
