@@ -107,7 +107,7 @@ PART = WORD(8, 4)
         (internals.SignalType, bit), (internals.SliceSignal, lambda: PART), (internals.ShadowSignal, lambda: PART),
         (internals.ShadowSignal, lambda: ConcatSignal(WORD, PART)), (internals.EnumItemType, lambda: STATES.BUSY),
     ],
-    ids=repr,
+    ids=lambda part: getattr(part, "__name__", "value").strip("<>"),
 )  # fmt: skip
 def test_classes_of_myhdl(kind, value):
     assert isinstance(value(), kind)
