@@ -29,5 +29,5 @@ always @* if (known && !reset) begin
     if (active) assert (age <= MOST_WAIT + MOST_LATENCY);
     if (!$past(reset) && active && !outstanding) assert (age == waited);
 end
-always @* if (known) assert (host.waiting == outstanding);
+always @* if (known && !reset) assert (host.waiting == outstanding);
 endmodule
