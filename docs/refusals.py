@@ -150,6 +150,8 @@ REFUSALS = (
     Refusal("driven constant", "part = tied(0, 4)  # refused\none = add(a, index, part, unconnected(1))\n"
             + _process("result.next = a ^ part"),
             "part = unsigned(4)\none = add(a, index, part, unconnected(1))\n" + _process("result.next = a ^ part")),
+    Refusal("outside", _process("result.next = concat(zero, index)  # refused", "zero = intbv(0)[2:]\n"),
+            _process("result.next = concat(zero, index)", "zero = tied(0, 2)\n")),
     Refusal("width", _process("result.next = a ^ count", "count = Signal(intbv(0))  # refused\n"
             "@always(clk.posedge)\ndef keep_count():\n    count.next = b\n"),
             _process("result.next = a ^ count", "count = Signal(intbv(0)[4:])\n"

@@ -23,7 +23,9 @@ def fault_in_block(error: BaseException, converters: tuple[str, ...] = ()) -> st
         converters: beginnings of the names of modules in which no fault can be, as they only call the conversion.
     """
     if found := re.fullmatch(r"in file (.+), line (\d+):\s*(.*)", str(error), re.DOTALL):
-        return f"{found[1]}:{found[2]}: {found[3]}"
+        # A slice has a driver already: the signal that it is cut from.
+        remedy = "; connect a new signal, not a slice" if found[3].startswith("Signal has multiple drivers") else ""
+        return f"{found[1]}:{found[2]}: {found[3]}{remedy}"
     if isinstance(error, SyntaxError):
         return f"{error.filename}:{error.lineno}: {error.msg}"
     frames = list(traceback.walk_tb(error.__traceback__))

@@ -122,6 +122,8 @@ class _Check(ast.NodeVisitor):
         if not isinstance(node, (ast.Call, ast.Subscript)) and any(map(_is_choice, parts)):
             self._refuse(node, "Verilog would compute the operator in one branch only; assign the choice to a signal")
         match node:
+            case ast.Name(id=name) if type(self._tree.symdict.get(name)) is intbv:
+                self._refuse(node, f"{name} is an intbv of no process, so Verilog has no value for it; use tied()")
             case ast.BinOp(op=ast.LShift() | ast.RShift() as op):
                 self._fits(node, width, needed)
                 self._judge(node.left, width, needed if isinstance(op, ast.LShift) else None)
