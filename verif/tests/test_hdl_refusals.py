@@ -76,7 +76,10 @@ def test_other_wrong_forms_are_refused(statements, tmp_path):
         ("nothing = unsigned(4)\nadding = add(a, nothing, result, unconnected(1))\n", "nothing: Signal is not driven"),
         ("lost = bit()\n" + process("lost.next = a[0]\nresult.next = b"), "lost: Signal is driven but not read"),
         ("fixed = tied(0, 4)\nadding = add(a, b, fixed, unconnected(1))\n", "fixed is a slice or a constant"),
-        ("part = b(4, 0)\nadding = add(a, index, part, unconnected(1))\n", "connect a new signal, not a slice"),
+        (
+            "part = b(4, 0)\nadding = add(a, index, part, unconnected(1))\n",
+            "Signal has multiple drivers: total; connect",
+        ),
         ("adding = add(a, b, result, unconnected(1))\n" + process("result.next = a"), "result has two drivers"),
         ("both = [a, b]\n" + process("result.next = both[index]"), "a process indexes both, but both[0] is also a"),
         (
