@@ -42,7 +42,7 @@ ROUNDING_MODELS: dict[str, SeedModel | RivalModel] = {
 """Golden models that round, by name: the seed engine with F = 0, truncated, with 4 and 8, to nearest, and others."""
 
 ARITHMETICS: dict[str, Model] = {"exact": ExactModel(), **ROUNDING_MODELS}
-"""All golden models; the beam engine's is the exact one."""
+"""Golden models by name; the exact one serves the exact and the beam engine."""
 
 
 def relative_conditions(slopes: np.ndarray, perfect: Trace) -> tuple[np.ndarray, ...]:

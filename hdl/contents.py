@@ -91,8 +91,8 @@ class Contents:
         """Analyse a block.
 
         Raises:
-            UserError: a signal has no driver, two drivers or no reader; it has no variable, no width, or a name that
-                is a keyword or another's; a process indexes a list of slices, or Verilog would compute something else.
+            UserError: a signal has no driver, two drivers or no reader; it has no variable or no width; its name is a
+                keyword or already taken; a process indexes a list of slices, or Verilog would compute something else.
         """
         self.block = block
         check_keyword(block, block.func.__name__)

@@ -99,7 +99,7 @@ def find_designs(
 
     Args:
         rounded: designs of the seed engine.
-        exact: designs without error, all of which are simulated and counted.
+        exact: designs without error; each is simulated and counted.
         spreads: distributions whose means are the designs' errors.
         sweep: computes points.
     """
@@ -196,7 +196,7 @@ def design_chapter(found: Designs, spreads: Spreads) -> Chapter:
     )
     routed = ", ".join(one.title for one in shown if one.is_routed) or "no designs"
     tuned = [
-        f"Placed and routed, some for several boards or with several seeds, of which the slowest counts: {routed}. All "
+        f"Placed and routed, at the slowest clock of all boards and seeds measured: {routed}. All "
         "other times are for the clock that the monitor requires, which the designs may miss or exceed.",
         "Tuned, within the row budget: the seed engine has 20 or 32 units and up to 3 quotient bits per cycle, the "
         "exact engine 4 to 16 units. Nothing was chosen for a scene, and all have the same options of Yosys and "

@@ -26,7 +26,7 @@ class Extent:
     """Number of random worlds."""
 
     rounded: Sequence[Configuration]
-    """Designs of the seed engine, the best of which are simulated and counted."""
+    """Designs of the seed engine; the best ones are simulated and counted."""
 
     exact: Sequence[Configuration]
     """Designs without error."""

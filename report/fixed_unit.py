@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The arithmetic of HomebrewGPU, Q18.14 fixed point, in a unit like the seed engine's, to count its cells."""
+"""A unit with the Q18.14 fixed point of HomebrewGPU, built like the seed engine's unit, to count its cells."""
 
 from __future__ import annotations
 

@@ -107,7 +107,7 @@ def seed_designs(fractions: Iterable[int], units: Iterable[int], screen: str = "
 
 
 def exact_designs(units: Iterable[int], screen: str = "vga") -> list[Configuration]:
-    """List designs without error: the exact engine's that meet the row budget, and the beam engine's.
+    """List designs without error: exact-engine designs that meet the row budget, and beam-engine designs.
 
     The beam engine has just one for screens other than VGA.
     """

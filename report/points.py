@@ -60,7 +60,7 @@ RECTANGLES = 12
 """Maximum number of rectangles in random worlds, and minimum in designs for any scene."""
 
 SUITE_SEED, AIMED_RAYS = 1, 16_000
-"""Seed of the rays at shared edges, and their number per table, of which those with unsuitable slopes are left out."""
+"""Seed of the rays at shared edges, and rays per table; rays with unsuitable slopes are left out."""
 
 UNITS = {engine: unit.__name__ for engine, unit in ray_caster.UNITS.items()}
 """Name of the module that implements a unit, by engine."""

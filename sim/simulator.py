@@ -370,7 +370,7 @@ class _OneText(Verilator):
     def __init__(
         self, program: Sequence[Path], bench: Bench, compiler: Callable[[list[str]], tuple[list[str], list[str]]]
     ):
-        """Build with this main program, if there is one, instead of cocotb's; for the compiler see `_compiler`."""
+        """Build with this main program, if there is one, instead of cocotb's; `_compiler` returns the command."""
         super().__init__()
         self._program, self._compiler = program, compiler
         # A window records few cycles; optimising the code that records them would take half of the build time.
@@ -490,7 +490,7 @@ _FEATURES = {
     "--coverage-expr": ("COVERAGE",),
     "--coverage-toggle": ("COVERAGE",),
 }
-"""Flags that change the contents of Verilator's library, none of which takes a value, and their macros."""
+"""Flags that change the contents of Verilator's library, and their macros; no flag takes a value."""
 
 _HEADERS = ("verilated.h", "verilated_timing.h", "verilated_vpi.h")
 """Headers of Verilator's library to precompile."""

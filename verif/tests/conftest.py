@@ -38,6 +38,16 @@ BUILD = ROOT / "build"
 
 SMALL_SCENE = Path(__file__).with_name("small.toml")
 
+FLOOR_SCENE = """
+[camera]
+position = [20, 256, 100]
+[[rect]]
+corners = [[0, 0, 0], [511, 511, 0]]
+colour = "#c8c8b4"
+"""
+TURNED_SCENE = FLOOR_SCENE.replace("100]", "100]\nyaw = 20")
+PATTERNED_SCENE = FLOOR_SCENE + 'pattern = "rows"\ncolour2 = "#000000"'
+
 TINY = {
     "seed": configure(engine="seed", screen="tiny", units=8, rectangles=3),
     "exact": configure(engine="exact", screen="tiny", rectangles=3),

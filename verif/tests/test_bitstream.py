@@ -177,7 +177,7 @@ def test_a_small_bitstream(board, tmp_path):
 
 
 def test_nextpnr_fails(design, tmp_path, monkeypatch):
-    """One line gives nextpnr's error and the place of its log; a pin of no such package is an example."""
+    """An error of nextpnr is reported in one line, with the path of its log; here, a pin that the package lacks."""
     said = "Info: packing\nERROR: package does not have a pin named 'Z9'\n"
     monkeypatch.setattr(bitstream, "_synthesise", lambda board, design, work: None)
     monkeypatch.setattr(bitstream, "place_and_route", lambda command, *_: CompletedProcess(command, 1, "", said))

@@ -100,7 +100,7 @@ def test_a_nios_system(processor, tmp_path):
     compare_calls(f"nios_system_{processor}", calls)
     ends = {end for call in calls for end in call[1:] if end.startswith("raycaster.")}
     assert ends == {f"raycaster.{interface.name}" for interface in interfaces(small())}
-    # The largest design's registers end before the next agent's.
+    # The registers of the largest design end below the next agent's base address.
     bases = {call[1]: int(call[3], 0) for call in calls if call[2:3] == ["baseAddress"]}
     [base] = [base for connection, base in bases.items() if connection.endswith("/raycaster.s0")]
     size = 4 << address_bits(MOST_RECTANGLES)

@@ -7,31 +7,21 @@ import shutil
 from pathlib import Path
 
 import pytest
-from conftest import refusal
+from conftest import FLOOR_SCENE, PATTERNED_SCENE, TURNED_SCENE, refusal
 
 from raycaster.sim.simulator import MODELS_VARIABLE
 
-SCENE = """
-[camera]
-position = [20, 256, 100]
-[[rect]]
-corners = [[0, 0, 0], [511, 511, 0]]
-colour = "#c8c8b4"
-"""
-TURNED = SCENE.replace("100]", "100]\nyaw = 20")
-PATTERNED = SCENE + 'pattern = "rows"\ncolour2 = "#000000"'
-
 OF_SCENES = [
     ("[camera", "", "is not TOML"),
-    ("rows = 180" + SCENE, "", "180 rows need the beam engine"),
-    (SCENE.replace("511, 0]", "511, 1]"), "", "rect"),
-    (SCENE.replace("256", "512"), "", "camera"),
-    (SCENE + SCENE[SCENE.index("[[rect") :] * 12, "", "13 rectangles, but the hardware holds 12"),
-    (TURNED, "--engine seed", "the seed engine measures depth along x, so its camera cannot turn"),
-    (TURNED, "FIX=all ENGINE=seed", "the seed engine measures depth along x"),
-    (TURNED, "TURN=0", "the scene needs a camera that turns; leave TURN out"),
-    (SCENE + "mirror = 0", "MATERIALS=0", "the scene needs rectangles that mirror more or less than half"),
-    (PATTERNED, "PATTERNS=0", "the scene needs rectangles with patterns; leave PATTERNS out"),
+    ("rows = 180" + FLOOR_SCENE, "", "180 rows need the beam engine"),
+    (FLOOR_SCENE.replace("511, 0]", "511, 1]"), "", "rect"),
+    (FLOOR_SCENE.replace("256", "512"), "", "camera"),
+    (FLOOR_SCENE + FLOOR_SCENE[FLOOR_SCENE.index("[[rect") :] * 12, "", "13 rectangles, but the hardware holds 12"),
+    (TURNED_SCENE, "--engine seed", "the seed engine measures depth along x, so its camera cannot turn"),
+    (TURNED_SCENE, "FIX=all ENGINE=seed", "the seed engine measures depth along x"),
+    (TURNED_SCENE, "TURN=0", "the scene needs a camera that turns; leave TURN out"),
+    (FLOOR_SCENE + "mirror = 0", "MATERIALS=0", "the scene needs rectangles that mirror more or less than half"),
+    (PATTERNED_SCENE, "PATTERNS=0", "the scene needs rectangles with patterns; leave PATTERNS out"),
 ]
 """Text of a scene, options of `sim` and the complaint."""
 
@@ -131,7 +121,7 @@ LATE = {
 def sets(table: dict[str, list[tuple[str, str]]], **given: bool) -> list:
     """Return parameter sets of a table's rows."""
     return [
-        pytest.param(SCENE, f"{name} {options}", said, given, id=f"{name} {options}"[:70])
+        pytest.param(FLOOR_SCENE, f"{name} {options}", said, given, id=f"{name} {options}"[:70])
         for name, rows in table.items()
         for options, said in rows
     ]
@@ -143,7 +133,7 @@ def directory(tmp_path: Path, monkeypatch) -> Path:
     monkeypatch.delenv(MODELS_VARIABLE)
     for name in ("mine/thesis", "de2/boxes.toml", "file"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(SCENE)
+        (tmp_path / name).write_text(FLOOR_SCENE)
     return tmp_path
 
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, SMALL_SCENE, called
+from conftest import FLOOR_SCENE, PATTERNED_SCENE, ROOT, SMALL_SCENE, TURNED_SCENE, called
 from PIL import Image
 
 from raycaster.configuration import configure
@@ -151,19 +151,6 @@ def test_a_wrong_pixel_fails(build):
     assert command in ran.stdout
 
 
-SCENE = """
-[camera]
-position = [20, 256, 100]
-[[rect]]
-corners = [[0, 0, 0], [511, 511, 0]]
-colour = "#c8c8b4"
-"""
-
-
-TURNED = SCENE.replace("100]", "100]\nyaw = 20")
-PATTERNED = SCENE + 'pattern = "rows"\ncolour2 = "#000000"'
-
-
 def test_a_scene_chooses_what_it_needs(tmp_path):
     def chosen(text, **options):
         path = tmp_path / "mine.toml"
@@ -171,12 +158,12 @@ def test_a_scene_chooses_what_it_needs(tmp_path):
         config = design_for(path, options).configuration
         return config.engine, config.looks
 
-    assert chosen(SCENE) == ("seed", ())
-    assert chosen(SCENE, engine="exact", turn="1") == ("exact", ("turn",))
-    assert chosen(TURNED) == ("exact", ("turn",))
-    assert chosen(TURNED, engine="beam") == ("beam", ("turn",))
-    assert chosen(PATTERNED) == ("seed", ("patterns",))
-    assert chosen(TURNED + "mirror = 0") == ("exact", ("turn", "materials"))
+    assert chosen(FLOOR_SCENE) == ("seed", ())
+    assert chosen(FLOOR_SCENE, engine="exact", turn="1") == ("exact", ("turn",))
+    assert chosen(TURNED_SCENE) == ("exact", ("turn",))
+    assert chosen(TURNED_SCENE, engine="beam") == ("beam", ("turn",))
+    assert chosen(PATTERNED_SCENE) == ("seed", ("patterns",))
+    assert chosen(TURNED_SCENE + "mirror = 0") == ("exact", ("turn", "materials"))
 
 
 def test_a_packaged_scene_from_anywhere(tmp_path):
