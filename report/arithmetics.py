@@ -19,8 +19,7 @@ from raycaster.report.errors import REFLECTIONS
 from raycaster.report.extent import CASE_REFLECTIONS, Extent
 from raycaster.report.fixed_unit import fixed_unit
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
-from raycaster.report.points import AIMED_RAYS, CASE, SEED, SUITE_SEED, Point, exact_trace, name_of, scene_of
-from raycaster.report.sweep import Sweep
+from raycaster.report.points import AIMED_RAYS, CASE, SEED, SUITE_SEED, Point, Sweep, exact_trace, name_of, scene_of
 
 TITLES = {
     "exact": "exact, beam", "seed-0": "seed, F = 0", "seed-4": "seed, F = 4", "seed-8": "seed, F = 8",
@@ -122,24 +121,23 @@ def _compared(
         "The number of wrong pixels is discontinuous: an error of any size flips a pixel or does not. The backward "
         "error of a ray is the least move of its slope, in pixels, for which it meets what was drawn, mirror by "
         "mirror: 0 for a right ray, and none if no slope does. It is computed from exact polygons on the screen, and "
-        "is conservative: never too small. Golden models with the number formats of other projects draw the same "
-        "pictures, without lights: Q18.14 fixed point, truncated (HomebrewGPU); a float with a sign, 6 bits of "
-        "exponent and 13 stored bits of significand, truncated (Racing the Beam); and IEEE single precision, without "
-        "an epsilon and with one of 0.001 world units. They compute t = n / e and O + D t; the projects' hardware "
-        "also normalises slopes and divides by reciprocals or tables, which adds errors. A float's hit point is off "
-        "by at most |w| (2 u + u^2) for the way w from the origin, with the unit roundoff u, and twice u times the "
-        f"greater operand of the sum. Figures are over the {len(every)} pictures whose camera is not turned; "
-        "measures.csv has all. A unit computes a + b (c - d) / e, with one quotient bit per cycle; the exact engine's "
-        "is the test of a whole rectangle, which replaces two. Nothing else of a ray tracer was counted, and no float "
-        "unit, whose shifters and roundings would have to be designed first."
+        "is conservative: never too small. Golden models with other projects' number formats draw the same pictures, "
+        "without lights: Q18.14 fixed point, truncated (HomebrewGPU); a float with a sign, 6 bits of exponent and 13 "
+        "stored bits of significand, truncated (Racing the Beam); and IEEE single precision, with and without an "
+        "epsilon of 0.001 world units. They compute t = n / e and O + D t; the projects' hardware also normalises "
+        "slopes and divides by reciprocals or tables, which adds errors. A float's hit point is off by at most "
+        "|w| (2 u + u^2) for the way w from the origin, with the unit roundoff u, and twice u times the greater "
+        f"operand of the sum. Figures are over the {len(every)} pictures whose camera is not turned; measures.csv has "
+        "all. A unit computes a + b (c - d) / e, with one quotient bit per cycle; the exact engine's tests a whole "
+        "rectangle, and replaces two. No other cells and no float unit were counted."
     )
     noisy = max(off["none"], key=lambda name: off["none"][name])
     said = [
         f"The mean backward error of all rays is {means['seed-0']:.2g} pixels for the seed engine with F = 0, "
         f"{means['q18.14']:.2g} for Q18.14 and {means['float20']:.2g} for the 20-bit float.",
-        f"Most rays without any right slope are in {TITLES[noisy]}: {off['none'][noisy]:.3%} of all, mostly "
-        "reflections in which a mirror hits itself. Errors of over a pixel that more digits do not reduce are in "
-        "corners, where an exact ray reflects off all walls, and a rounded one off some.",
+        f"Most rays without any right slope are in {TITLES[noisy]}: {off['none'][noisy]:.3%}, mostly reflections in "
+        "which a mirror hits itself. Errors of over a pixel that more digits do not reduce are in corners, where an "
+        "exact ray reflects off all walls, and a rounded one off some.",
     ]
     return Section("Other arithmetic", text, said, [plot], [Table.of(plot.data, hidden=1)], [measured])
 
@@ -190,18 +188,18 @@ def _watertight(what: Extent, sweep: Sweep) -> tuple[Section, int]:
         "Rectangles are watertight if no ray passes between two that share an edge or a corner. Rays are aimed "
         "exactly at shared edges and corners of tiled walls, stairs, closed rooms, and closed rooms seen in one of "
         f"their walls, with slopes of 9 bits and those of turned cameras (seed {SUITE_SEED}, {tables} tables of each "
-        f"kind, up to {AIMED_RAYS:,} rays each). A leak is a ray that sees the background or a farther rectangle. "
-        "Exact arithmetic has none, by count and by proof: a closed rectangle contains its edges, and a "
-        "cross-multiplied comparison of integers is exact. The manual's proofs of `rect_tester` and `ray_tester` show "
-        "that the hardware makes this comparison. The seed engine is tested without turned cameras."
+        f"kind, up to {AIMED_RAYS:,} rays each; no turned cameras for the seed engine). A leak is a ray that sees the "
+        "background or a farther rectangle. Exact arithmetic has none, by count and by proof: a closed rectangle "
+        "contains its edges, cross-multiplied comparisons of integers are exact, and the manual's proofs of "
+        "`rect_tester` and `ray_tester` show that the hardware makes them."
     )
     said = [
         f"In exact arithmetic, {sums['exact'][1]:,} of {sums['exact'][0]:,} rays leak.",
         "Where a wall and a step meet in an outward edge, a truncated t is short of both, so Q18.14 and the 20-bit "
         f"float leak {by['stairs']['q18.14']:.2%} of the rays at stairs. Rounding to nearest leaks in closed rooms "
-        f"too: {by['room']['single']:.3%} in single precision. Rounding to the seed engine's fractions never moves a "
-        "primary ray's point across a bound, which is an integer, so its leaks there come from depths that round to "
-        "the same number; reflected rays start at rounded points.",
+        f"too: {by['room']['single']:.3%} in single precision. The seed engine's rounding never moves a primary ray's "
+        "point across a bound, which is an integer: its leaks come from depths that round to the same number, and "
+        "from reflected rays, which start at rounded points.",
     ]
     plot = Plot("leaks", "Share of leaking rays by kind of table; marks at the left end are 0.",
                 plots.by_arithmetic(TITLES, [("share of leaking rays", by)]), data)  # fmt: skip
@@ -235,9 +233,9 @@ def _shadows(what: Extent, sources: Sequence[str]) -> list[Section]:
     text = (
         "A ray tracer in floats rounds the hit point to either side of its rectangle, whose own shadow may then fall "
         "on it: shadow acne. The usual remedy is an epsilon, a distance from the point within which a shadow ray hits "
-        "nothing. One that is too small leaves the acne, and one that is too large removes true shadows. "
-        "Cross-multiplication rounds nothing and needs no epsilon. Here the hit points and shadow rays of primary rays "
-        "are computed in single precision, at 320x240; everything else is exact."
+        "nothing: too small, it leaves the acne; too large, it removes true shadows. Cross-multiplication rounds "
+        "nothing and needs none. Here the hit points and shadow rays of primary rays are computed in single precision, "
+        "at 320x240; everything else is exact."
     )
     said = [
         "Points in the wrong light by epsilon, in world units: "

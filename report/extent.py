@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from raycaster.configuration import LOOKS, MOST_REFLECTIONS, Configuration, configure
+from raycaster.configuration import LOOKS, Configuration, configure
 from raycaster.golden.catalogue import Case, catalogue
-from raycaster.report.hardware import exact_designs, seed_designs
+from raycaster.report.designs import exact_designs, seed_designs
 
 CASE_REFLECTIONS = 2
 """Number of reflections in the catalogue's cases."""
@@ -19,17 +19,11 @@ class Extent:
     """Extent of a sweep."""
 
     fractions: Sequence[int]
-    reflections: Sequence[int]
-    """Numbers of reflections for the packaged scenes' pictures; random worlds use 1 and the greatest of these."""
-
     worlds: int
     """Number of random worlds."""
 
-    rounded: Sequence[Configuration]
-    """Designs of the seed engine; the best ones are simulated and counted."""
-
-    exact: Sequence[Configuration]
-    """Designs without error."""
+    designs: Sequence[Configuration]
+    """Designs that are simulated and counted."""
 
     cases: Sequence[Case]
     case_fractions: Sequence[int]
@@ -37,9 +31,6 @@ class Extent:
     probed_cases: Sequence[Case]
     probed: Sequence[Configuration]
     """Designs whose hit points are checked in simulation."""
-
-    shown: Sequence[Configuration]
-    """Designs that are simulated with every case that they can draw."""
 
     left: Sequence[str]
     """Names of the packaged scenes for which a design is reduced step by step."""
@@ -52,21 +43,17 @@ def extent(quick: bool) -> Extent:
     if quick:
         probed = configure(screen="tiny", units=16, reflections=CASE_REFLECTIONS, divider_bits=3, allow_underrun=True)
         return Extent(
-            fractions=(0, 2, 4), reflections=(0, 1, 2), worlds=24, rounded=seed_designs((0,), (16,), "tiny")[:1],
-            exact=exact_designs((4,), "tiny"), cases=cases, case_fractions=(0,), case_screen="tiny",
-            probed_cases=plain[::12], probed=[probed], shown=[], left=(),
+            fractions=(0, 2, 4), worlds=24,
+            designs=[*seed_designs((), (16,), "tiny")[1:2], *exact_designs((4,), "tiny")], cases=cases,
+            case_fractions=(0,), case_screen="tiny", probed_cases=plain[::12], probed=[probed], left=(),
         )  # fmt: skip
     probed = [
         configure(reflections=CASE_REFLECTIONS, fraction_bits=f, rounding=r, divider_bits=3)
         for f, r in ((0, "truncate"), (4, "nearest"))
     ]
-    shown = [
-        configure(engine=engine, reflections=CASE_REFLECTIONS, turn=True, materials=True, patterns=True, **more)
-        for engine, more in (("exact", {"light": True}), ("beam", {"scale": 1}))
-    ]
     return Extent(
-        fractions=range(9), reflections=range(MOST_REFLECTIONS + 1), worlds=200,
-        rounded=seed_designs((0, 2, 4, 6, 8), (20, 32)), exact=exact_designs((4, 5, 8, 10, 16)), cases=cases,
-        case_fractions=(0, 4), case_screen="vga", probed_cases=plain, probed=probed, shown=shown,
+        fractions=range(9), worlds=200,
+        designs=[*seed_designs((0, 4, 8), (20, 32)), *exact_designs((4, 5, 8, 10, 16))], cases=cases,
+        case_fractions=(0, 4), case_screen="vga", probed_cases=plain, probed=probed,
         left=("corners", "facing_mirrors", "pool", "evening", "shadow_hall"),
     )  # fmt: skip

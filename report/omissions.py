@@ -9,8 +9,7 @@ from raycaster.configuration import configure
 from raycaster.report import plots
 from raycaster.report.extent import Extent
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
-from raycaster.report.points import LEFT_UNITS, Point, name_of
-from raycaster.report.sweep import Sweep
+from raycaster.report.points import LEFT_UNITS, Point, Sweep, name_of
 
 COLUMNS = (
     "scene", "left out", "LUT4", "registers", "multipliers", "units needed", "cycles per frame", "clock MHz",

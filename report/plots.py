@@ -29,8 +29,6 @@ from raycaster.screens import SCREENS
 if TYPE_CHECKING:
     from matplotlib.typing import RcKeyType
 
-    from raycaster.report.hardware import Candidate
-
 WIDTH = 4.6
 """Width in inches, a column of a printed page; 9-point text stays legible on a phone, at three quarters of the size."""
 
@@ -55,16 +53,6 @@ LEAST_RAYS = 1e-6
 
 LEAST_SHARE = 1e-5
 """Lower limit for drawing a picture's share of wrong pixels: below one pixel, so smaller shares are drawn as 0."""
-
-WORDS = {
-    "frame_ms": "time per frame, ms",
-    "work": "cells x time per frame, LUT4 x s",
-    "cells": "cells, ECP5 LUT4",
-    "simulated_s": "simulation time per frame, s",
-    "error": "mean share of wrong pixels",
-}
-CLOCKED = "frame_ms", "work"
-"""Costs that depend on the clock."""
 
 
 def new_figure(height: float, rows: int = 1, columns: int = 1, **options) -> tuple[Figure, np.ndarray]:
@@ -92,72 +80,20 @@ def _percent(axes: Axes, none: float) -> None:
     axes.set_ylim(bottom=none / 2)
 
 
-def _ticks(axis: Axis, form: Callable[[float], str] = "{:,.0f}".format) -> None:
+def ticks(axis: Axis, form: Callable[[float], str] = "{:,.0f}".format) -> None:
     """Label a logarithmic axis at 1, 2, 5, 10 and so on."""
     axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: form(value)))
     axis.set_minor_formatter(NullFormatter())
 
 
-def _label(
+def label(
     axes: Axes, labels: Iterable[tuple[float, float, str]], xs: Sequence[float], ys: Sequence[float], **options
 ) -> None:
     """Write labels next to marks, away from each other and from all marks; the axes must have their final limits."""
     axes.get_figure(root=True).draw_without_rendering()  # pyright: ignore[reportOptionalMemberAccess]
     texts = [axes.text(*label, fontsize=LABEL_POINTS, zorder=4) for label in labels]
     adjust_text(texts, x=xs, y=ys, ax=axes, arrowprops={"arrowstyle": "-", "color": GREY, "lw": 0.5}, **options)
-
-
-# Designs --------------------------------------------------------------------------------------------------------------
-
-
-@styled
-def work_precision(
-    rounded: Sequence[Candidate], exact: Sequence[Candidate], cost: str, frontier: Sequence[Candidate]
-) -> Figure:
-    """Plot error against a cost, a key of `WORDS`: designs that round above, a line per design without error below.
-
-    Hollow marks are at the clock that a monitor requires, filled ones at a routed clock or for costs without a clock;
-    grey dots are estimates; bars span the runs of a simulation.
-
-    Args:
-        rounded: designs that round.
-        exact: designs without error.
-        cost: attribute along x.
-        frontier: designs for a line and with labels, ordered along x; all have labels if it is empty.
-    """
-    below = 0.16 * len(exact)
-    figure, [[upper], [lower]] = new_figure(3.4 + below, 2, 1, sharex=True, height_ratios=(3, below))
-    for axes, every in ((upper, rounded), (lower, exact)):
-        ups = [one.error for one in every] if axes is upper else range(len(every))
-        for one, up in zip(every, ups, strict=True):
-            engine, across = one.config.facts, getattr(one, cost)
-            if one.is_found:
-                face = "white" if cost in CLOCKED and not one.is_routed else engine.colour
-                axes.plot(across, up, engine.marker, mfc=face, mec=engine.colour, ms=5, mew=0.8)
-                if cost == "simulated_s":
-                    axes.hlines(up, min(one.seconds), max(one.seconds), engine.colour)
-            elif cost != "simulated_s":
-                axes.plot(across, up, ".", color=GREY, ms=3, alpha=0.6)
-    upper.set(xscale="log", yscale="log", ylabel=WORDS["error"])
-    upper.margins(0.12)
-    _ticks(upper.yaxis, lambda share: f"{100 * share:g}%")
-    _ticks(lower.xaxis, "{:,.0f}".format if cost == "cells" else "{:g}".format)
-    lower.set(xlabel=WORDS[cost], ylabel="no error", ylim=(len(exact) - 0.4, -0.6))
-    names = [f"{one.config.engine} {one.config.facts.label(one.config)}" for one in exact]
-    lower.set_yticks(range(len(exact)), names, fontsize=LABEL_POINTS)
-    if frontier:
-        line = [getattr(one, cost) for one in frontier], [one.error for one in frontier]
-        upper.step(*line, where="post", color=frontier[0].config.facts.colour, linewidth=0.9, alpha=0.7)
-    shown = [one for one in rounded if one.is_found or cost != "simulated_s"]
-    xs, ys = [getattr(one, cost) for one in shown], [one.error for one in shown]
-    labels = [
-        (x, y, one.config.facts.label(one.config))
-        for x, y, one in zip(xs, ys, shown, strict=True)
-        if one in frontier or not frontier
-    ]
-    _label(upper, labels, xs, ys, expand=(1.15, 1.3), force_text=(0.3, 0.6))
-    return figure
 
 
 # Errors ---------------------------------------------------------------------------------------------------------------
@@ -241,7 +177,7 @@ def stiffness(cases: Mapping[str, tuple[float, float, float]], labelled: Sequenc
     axes.margins(0.2, 0.1)
     _legend(figure)
     labels = [(*cases[name][:2], name) for name in labelled]
-    _label(axes, labels, conditions, errors, expand=(1.3, 1.8), force_text=(0.6, 1.2))
+    label(axes, labels, conditions, errors, expand=(1.3, 1.8), force_text=(0.6, 1.2))
     return figure
 
 

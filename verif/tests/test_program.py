@@ -123,7 +123,7 @@ def test_help_and_completions_without_an_extra():
     """Each command shows its help without any package that only an extra installs."""
     missing = {
         "adjustText", "cocotb_coverage", "distributed", "elftools", "litex", "matplotlib", "playwright", "pygame",
-        "pygraphviz", "skimage", "sphinx", "wavedrom", "ziglang",
+        "pygraphviz", "sphinx", "wavedrom", "ziglang",
     }  # fmt: skip
     command = [sys.executable, "-c", WITHOUT_EXTRAS.format(missing=missing)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)

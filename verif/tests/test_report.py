@@ -27,11 +27,10 @@ from raycaster.fpga.cells import Area
 from raycaster.golden import errors as golden_errors
 from raycaster.golden.catalogue import catalogue
 from raycaster.report import __main__ as report
-from raycaster.report import designs, hardware, page, plots, points, stability
+from raycaster.report import designs, page, plots, points, stability
 from raycaster.report.extent import Extent
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
-from raycaster.report.points import UNITS, Point, leaving_out, picture
-from raycaster.report.sweep import Sweep
+from raycaster.report.points import Point, Sweep, leaving_out, picture
 from raycaster.scene import dump_scene, find_scene, load_scene
 
 ROOT = Path(__file__).parents[2]
@@ -47,8 +46,7 @@ POINTS = {
     "world": picture("seed:5", 0, "nearest", 1),
     "measures": Point("measures", "case:turned", configure(reflections=2, screen="tiny", allow_underrun=True)),
     "leaks": Point("leaks", "float20+1", configure()),
-    "cells": Point("cells", UNITS["seed"], SMALL),
-    "cases": Point("cases", "7+2", configure(engine="exact", screen="tiny", reflections=2, allow_underrun=True)),
+    "cells": Point("cells", "ray_unit", SMALL),
     "left": Point("left", CORNERS, configure(engine="exact")),
     "time": Point("time", "scenes/boxes.toml", configure(culling=False, fraction_bits=8), 5),
     "hits": Point("hits", "case:box_20", configure(reflections=2, divider_bits=3)),
@@ -64,12 +62,11 @@ def test_a_command_names_its_point(name):
 
 EXPECTED = {
     "world": lambda found: found["pixels"] == 160 * 120 and 0 < found["wrong"] < 9000,
-    "cases": lambda found: len(found) == 2 and not any(one["wrong"] for one in found.values()),
     "cells": lambda found: found["cells"] > 100,
 }
 
 
-@pytest.mark.slow_sets("cases", "cells")
+@pytest.mark.slow_sets("cells")
 @pytest.mark.parametrize("name", EXPECTED)
 def test_results(name):
     assert EXPECTED[name](POINTS[name].compute())
@@ -87,7 +84,6 @@ def test_a_command_prints_its_result(tmp_path):
         ("picture case:nothing", "error: case:nothing: no such case in the catalogue; choose one of "),
         ("time nowhere.toml", "error: nowhere.toml: cannot be read"),
         ("picture seed:one", "error: seed:one: expected a whole number, 0 or more, as the seed"),
-        ("cases all", "error: cases: expected FIRST+COUNT, such as 0+10, got all"),
         ("leaks q18.15+1", "error: leaks: expected ARITHMETIC+TABLES, such as exact+20, got q18.15+1"),
         ("cells ray_unit --units 7", "error: units: 7 does not divide"),
         ("report", "error: scenes: contains no scene files; run this in the project directory"),
@@ -158,29 +154,31 @@ def test_changes_make_results_stale(tmp_path, monkeypatch):
 # Designs and pages ----------------------------------------------------------------------------------------------------
 
 
-def found(config, error: float, cells: int, cycles: int | None = None) -> hardware.Candidate:
-    """Return a design whose figures are all measured, not estimated; its cycles may be those predicted."""
+def found(config, error: float, cells: int, cycles: int | None = None) -> designs.Design:
+    """Return a design with these figures; its cycles may be those predicted."""
     frame = points.predicted_cycles(config) if cycles is None else cycles
-    return hardware.Candidate(config, error, 0, {"cells": cells}, {"frame_cycles": frame, "seconds": [3, 1, 2]})
+    return designs.Design(config, error, {"cells": cells}, {"frame_cycles": frame, "seconds": [3, 1, 2]})
 
 
 def test_the_frontier():
     costs = (0.01, 101, 50), (0.0005, 200, 70), (0.0005, 200, 60), (0.001, 200, 50), (0.01, 100, 50), (0.01, 100, 50)
     every = [found(configure(), *cost) for cost in costs]
     _, _, slower, exacter, best, same = every
-    assert hardware.frontier(every, "frame_ms", "error") == [exacter, slower]
-    assert hardware.frontier(every, "cells", "error")[:2] == [best, same]
-    assert hardware.frontier(every, "frame_ms", "error", "cells") == [exacter, best, same, slower]
+    assert designs.frontier(every, "frame_ms", "error") == [exacter, slower]
+    assert designs.frontier(every, "cells", "error")[:2] == [best, same]
+    assert designs.frontier(every, "frame_ms", "error", "cells") == [exacter, best, same, slower]
     assert best.simulated_s == 2
 
 
 def test_designs_of_each_engine():
     """Designs with a line buffer meet the row budget; the beam engine has every scale and number of lanes."""
-    exact = hardware.exact_designs((2, 4, 8))
-    buffered = hardware.seed_designs((0, 8), (20, 32)) + [one for one in exact if one.engine == "exact"]
+    seeds, exact = designs.seed_designs((0, 8), (20, 32)), designs.exact_designs((2, 4, 8))
+    buffered = seeds + [one for one in exact if one.engine == "exact"]
     assert all(config.group_cycles * config.groups <= config.screen_geometry.row_cycles for config in buffered)
-    assert not any((config.units, config.divider_bits) == (20, 1) for config in buffered)
-    assert any(config.fraction_bits == 8 for config in buffered)
+    # One quotient bit per cycle takes 20 units too long.
+    assert {one.divider_bits for one in seeds if (one.units, one.fraction_bits) == (20, 0)} == {2}
+    assert {(one.fraction_bits, one.rounding) for one in seeds} == {(0, "truncate"), (0, "nearest"), (8, "nearest")}
+    assert configure(culling=False) in seeds
     assert [config.units for config in buffered if config.engine == "exact"] == [4, 8]
     for config in (one for one in exact if one.engine == "beam"):
         # It computes each pixel as often as the monitor shows it.
@@ -200,12 +198,12 @@ def test_time_at_the_slowest_routed_clock(tmp_path, monkeypatch):
     for name, figures in clocks.items():
         kept = {"scope": {"configuration": exact.config.name}, "figures": figures}
         (tmp_path / f"{name}.json").write_text(json.dumps(kept))
-    monkeypatch.setattr(hardware, "RESULTS", tmp_path)
-    hardware.routed_clocks.cache_clear()
+    monkeypatch.setattr(designs, "RESULTS", tmp_path)
+    designs.routed_clocks.cache_clear()
     assert (exact.is_routed, exact.clock_mhz, exact.frame_ms) == (True, 62.5, 1.6)
     assert (seed_design.is_routed, seed_design.clock_mhz, seed_design.frame_ms) == (False, 50, 2)
     assert exact.work == pytest.approx(4000 * 1.6e-3)
-    hardware.routed_clocks.cache_clear()
+    designs.routed_clocks.cache_clear()
 
 
 def test_steps_of_leaving_out():
@@ -265,18 +263,17 @@ def test_labels_that_touch_are_noticed():
 
 def test_labels_of_many_designs_do_not_touch():
     """The plots have as many designs as the whole report, at similar places."""
-    rounded = [
+    every = [
         found(
             config, 0.0013 + 0.01 * 0.5**config.fraction_bits * (1 if config.rounding == "truncate" else 0.9),
             2000 + config.units * (520 + 40 * config.divider_bits + 30 * config.fraction_bits),
         )
-        for config in hardware.seed_designs((0, 2, 4, 6, 8), (20, 32))
-    ]  # fmt: skip
-    exact = [found(config, 0.0, 9000) for config in hardware.exact_designs((4, 5, 8, 10, 16))]
-    every = designs.Designs([*rounded, *exact])
-    for cost in designs.COSTS:
-        upper, lower = (figure := plots.work_precision(rounded, exact, cost, every.by(cost))).axes
-        assert len(upper.texts) == len(every.by(cost)) > 3
+        for config in designs.seed_designs((0, 4, 8), (20, 32))
+    ] + [found(config, 0.0, 9000) for config in designs.exact_designs((4, 5, 8, 10, 16))]  # fmt: skip
+    rounded, exact = designs.split(every)
+    for cost in designs.WORDS:
+        upper, lower = (figure := designs.work_precision(every, cost)).axes
+        assert len(upper.texts) == len(designs.frontier(rounded, cost, "error")) >= 2
         assert len(lower.get_yticklabels()) == len(exact) == 12
         assert list(crowded(figure)) == []
 
@@ -284,9 +281,9 @@ def test_labels_of_many_designs_do_not_touch():
 def small_extent(cases, probed_cases, probed) -> Extent:
     """Return an extent with as little as possible of everything."""
     return Extent(
-        fractions=(0, 4), reflections=(0, 1, 2), worlds=6, rounded=hardware.seed_designs((0,), (16,), "tiny")[:1],
-        exact=hardware.exact_designs((4,), "tiny"), cases=cases, case_fractions=(0,), case_screen="tiny",
-        probed_cases=probed_cases, probed=probed, shown=[], left=["corners"],
+        fractions=(0, 4), worlds=6,
+        designs=[*designs.seed_designs((), (16,), "tiny")[1:2], *designs.exact_designs((4,), "tiny")], cases=cases,
+        case_fractions=(0,), case_screen="tiny", probed_cases=probed_cases, probed=probed, left=["corners"],
     )  # fmt: skip
 
 
@@ -309,9 +306,7 @@ def test_a_small_report(tmp_path, monkeypatch):
     """It has everything once, including simulations; cell counts are invented."""
 
     def cells(config, family, directory, top):
-        alone = top in UNITS.values()
-        units = 1 if alone else config.units
-        return Area(units * (600 + 20 * config.fraction_bits) + (0 if alone else 3000), 0, 0, 2 * units, 0)
+        return Area(config.units * (600 + 20 * config.fraction_bits) + 3000, 0, 0, 2 * config.units, 0)
 
     def rows(name: str) -> list[dict[str, str]]:
         with (tmp_path / f"{name}.csv").open() as file:
@@ -337,14 +332,13 @@ def test_a_small_report(tmp_path, monkeypatch):
     assert [figures[name] for name in ("alarms", "stiff_cases", "unlike_golden", "over_bound")] == [0, 1, 0, 0]
     # The kept figures of the designs draw the same plot.
     again = designs.of_kept(json.loads(json.dumps(figures["designs"])))
-    plots.save(designs.error_and_time(again), tmp_path / "again.svg")
+    plots.save(designs.work_precision(again, "frame_ms"), tmp_path / "again.svg")
     assert (tmp_path / "again.svg").read_text() == (tmp_path / "work_frame_ms.svg").read_text()
     assert html.count("<figure") == html.count("<svg ") == 13
     assert rows("catalogue")
     keys = "scene", "F", "rounding", "reflections"
     [one] = [row for row in rows("pictures") if [row[key] for key in keys] == ["corners", "4", "nearest", "1"]]
-    words = "--fraction-bits 4 --rounding nearest --reflections 1 --screen vga"
-    assert one["command"].endswith(f"points picture scenes/corners.toml {words}")
+    assert points.parsed(one["command"].split()[3:]) == picture("scenes/corners.toml", 4, "nearest", 1)
     assert [row["left out"] for row in rows("left")][::9] == ["", "hidden rectangles"]
     assert ">any scene<" in (tmp_path / "left_corners.svg").read_text()
     best = rows("designs")
@@ -355,6 +349,6 @@ def test_a_small_report(tmp_path, monkeypatch):
     [seen] = rows("hit_points")
     assert (seen["hit points unlike the model"], seen["over the bound"]) == ("0", "0")
     assert float(seen["worst error"]) > 0
-    assert {row["kind of point"] for row in rows("points")} == set(points.KINDS) - {"cases"}
+    assert {row["kind of point"] for row in rows("points")} == set(points.KINDS)
     # Nothing is computed twice: the pages are rebuilt from kept results.
     assert unescape(write(sweep_of(tmp_path, lambda: pytest.fail("not kept")))[0].read_text()) == html
