@@ -102,10 +102,9 @@ def _compared(
         cells, command = units.get(name, (dict.fromkeys(("cells", "registers", "multipliers")), None))
         table.append([title, *percent, means[name], *most, *cells.values(), command])
     columns = (
-        "arithmetic", *(f"wrong pixels, {group}: mean, %" for group in common), "flipped rays, %",
-        *(f"backward error {label}, %" for label in list(flips)[1:]), "mean, px", "greatest, px",
-        "forward error: greatest, world units", "error / bound", "LUT4 of a unit", "registers", "multipliers",
-        "command",
+        "arithmetic", *(f"wrong in {group}, %" for group in common), "flipped rays, %",
+        *(f"{label}, %" for label in list(flips)[1:]), "backward error: mean, px", "greatest, px",
+        "forward error: greatest, units", "error / bound", "LUT4 of a unit", "registers", "multipliers", "command",
     )  # fmt: skip
     cells = {name: of["cells"] for name, (of, _) in units.items()}
     figure = plots.by_arithmetic(
@@ -139,7 +138,7 @@ def _compared(
         "which a mirror hits itself. Errors of over a pixel that more digits do not reduce are in corners, where an "
         "exact ray reflects off all walls, and a rounded one off some.",
     ]
-    return Section("Other arithmetic", text, said, [plot], [Table.of(plot.data, hidden=1)], [measured])
+    return Section("Other arithmetic", text, said, [plot], [Table.of(plot.data, hidden=3)], [measured])
 
 
 def _rule(found: Results) -> tuple[Section, float]:
@@ -221,7 +220,8 @@ def _shadows(what: Extent, sources: Sequence[str]) -> list[Section]:
             lit, shown = exact.shadings[0].lit, [("exact", exact.colours.reshape(slopes.shape))]
             for place, epsilon in enumerate(EPSILONS):
                 arguments = Rectangles.of_scene(scene), scene.camera.position, slopes.reshape(-1, 3)
-                found = RivalModel(SINGLE, epsilon).lit(*arguments, light.position, exact)
+                with np.errstate(divide="ignore"):  # a point at the light
+                    found = RivalModel(SINGLE, epsilon).lit(*arguments, light.position, exact)
                 counts[place] += lit.sum(), (lit & ~found).sum(), (found & ~lit).sum()
                 colours = plain.colours.copy()
                 dim(colours, (exact.winners[0] >= 0) & ~found, light)

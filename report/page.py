@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 from matplotlib.figure import Figure
 
 from raycaster.report import plots
@@ -99,6 +99,7 @@ def write(page: Chapter, directory: Path) -> Path:
         for plot in section.plots:
             plots.save(plot.figure, directory / f"{plot.name}.svg")
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment.filters["code"] = lambda text: Markup(re.sub(r"`([^`]*)`", r"<code>\1</code>", str(escape(text))))
     names = {
         "title": TITLE, "page": page, "show": show, "svg": lambda name: _inline(directory, name),
         "encoded": lambda data: base64.b64encode((directory / f"{data.name}.csv").read_bytes()).decode(),
