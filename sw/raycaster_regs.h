@@ -20,11 +20,11 @@ extern "C" {
 #define RAY_CASTER__VERSION__MINOR_bm 0xffff
 #define RAY_CASTER__VERSION__MINOR_bp 0
 #define RAY_CASTER__VERSION__MINOR_bw 16
-#define RAY_CASTER__VERSION__MINOR_reset 0x6
+#define RAY_CASTER__VERSION__MINOR_reset 0x0
 #define RAY_CASTER__VERSION__MAJOR_bm 0xffff0000
 #define RAY_CASTER__VERSION__MAJOR_bp 16
 #define RAY_CASTER__VERSION__MAJOR_bw 16
-#define RAY_CASTER__VERSION__MAJOR_reset 0x0
+#define RAY_CASTER__VERSION__MAJOR_reset 0x1
 
 // reg - ray_caster::engine
 #define RAY_CASTER__ENGINE__ENGINE_bm 0xf

@@ -88,7 +88,7 @@ def test_the_header_names_every_engine_and_pattern():
     [
         ("id", {"magic": 0}, Error.NOT_FOUND),
         ("id", {"magic": 0xFFFFFFFF}, Error.NOT_FOUND),
-        ("version", {"major": 1}, Error.OTHER_VERSION),
+        ("version", {"major": 2}, Error.OTHER_VERSION),
         ("version", {"minor": 77}, Error.OK),
     ],
 )
