@@ -7,6 +7,7 @@ import json
 from dataclasses import replace
 
 import pytest
+from conftest import refused
 
 from raycaster.errors import UserError
 from raycaster.verif.formal.faults import model_with_faults, outcome
@@ -120,9 +121,9 @@ def test_every_property_has_a_fault():
     assert {proof.name for proof in FAULTY} == {proof.name for proof in PROPERTIES}
 
 
-def test_unknown_property(refuses):
+def test_unknown_property():
     """The error lists the known properties."""
-    assert "got no-such, expected one of video-timing" in refuses(main, "--property", "no-such")
+    assert "got no-such, expected one of video-timing" in refused(main, "--property", "no-such")
 
 
 def test_kept_proofs_are_not_repeated(output, monkeypatch, names_for_digests):

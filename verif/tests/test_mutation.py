@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import refused
 
 from raycaster.errors import UserError
 from raycaster.hdl.leaf import Leaf
@@ -189,5 +190,5 @@ def test_the_command_reports(tmp_path, capsys, monkeypatch):
     assert result["module"] == "ray_mem" and len(result["mutants"]) == 20
 
 
-def test_unknown_modules_are_refused(refuses):
-    assert "got adder, expected one of" in refuses(main, "--module", "adder")
+def test_unknown_modules_are_refused():
+    assert "got adder, expected one of" in refused(main, "--module", "adder")

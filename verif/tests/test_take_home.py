@@ -17,7 +17,7 @@ from ipyxact.ipyxact import Component
 from tcl import tcl_calls
 
 from raycaster.buses import BRIDGED
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import OPTIONS, Configuration, configure
 from raycaster.convert.ip_xact import IP_XACT, SPIRIT
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM
 from raycaster.convert.take_home import FILE_LIST, PREFIX, TOP, WAIVERS
@@ -112,10 +112,13 @@ def check_component(config: Configuration, calls: list[list[str]], ports: Ports,
     assert files == 2 * [[name, "VERILOG", "PATH", name] for name in sources]
     hertz = config.screen_geometry.clock_hz
     assert ["set_interface_property", "clock", "clockRate", str(hertz)] in calls
-    macros = {call[1].rpartition(".")[2]: call[2] for call in calls if call[0] == "set_module_assignment"}
-    assert (macros["RECTANGLES"], macros["CULLING"]) == (str(config.rectangles), str(int(config.culling)))
-    assert macros["ROUNDING"] == f'"{config.rounding}"'
-    assert macros.get("FIXED") == (f'"{config.fixed.scope}"' if config.fixed else None)
+    options = {name: getattr(config, name) for name in OPTIONS} | (
+        {"fixed": config.fixed.scope} if config.fixed else {}
+    )
+    assert [call[1:] for call in calls if call[0] == "set_module_assignment"] == [
+        [f"embeddedsw.CMacro.{name.upper()}", f'"{value}"' if isinstance(value, str) else str(int(value))]
+        for name, value in options.items()
+    ]
 
 
 def check_ip_xact(path: Path, ports: Ports, sources: list[str]) -> None:
