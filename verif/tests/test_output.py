@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import errno
-import io
 import os
 import re
 import signal
@@ -168,17 +167,3 @@ def test_a_terminal_without_the_character(tmp_path: Path):
     done = raycaster("sim", "größe", cwd=tmp_path, env=os.environ | {"PYTHONIOENCODING": "ascii"})
     assert done.returncode == 2
     assert done.stderr.startswith(r"error: gr\xf6\xdfe: no such file")
-
-
-@pytest.mark.parametrize("is_terminal", [False, True])
-def test_a_wait_says_how_long_it_usually_is(is_terminal: bool):
-    """A pipe gets one line at the start; a terminal also shows the elapsed time."""
-    file = io.StringIO()
-    console = Console(file=file, force_terminal=is_terminal, width=80)
-    with console.waiting("building [x]", "usually 30 s, once"):
-        begun = file.getvalue()
-    if is_terminal:
-        assert "building [x] (usually 30 s, once)" in file.getvalue()
-        assert "0:00:00" in file.getvalue()
-    else:
-        assert begun == file.getvalue() == "building [x] (usually 30 s, once)\n"

@@ -196,11 +196,6 @@ def test_every_waiver_is_needed(tmp_path):
         patterns = {pattern for pattern in patterns if not fnmatch.filter(said, pattern)}
 
 
-def test_a_waiver_has_its_reason():
-    for paragraph in WAIVERS.read_text().split("\n\n")[1:]:
-        assert re.match(r"(// .+\n)+lint_off", paragraph)
-
-
 def fusesoc(folder: Path, *target: str) -> subprocess.CompletedProcess[str]:
     """Run FuseSoC on the core in a folder."""
     command = ("fusesoc", "--cores-root", "cores", "run", "--target", *target, f"raycaster::{TOP}")
