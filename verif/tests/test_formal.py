@@ -13,10 +13,8 @@ from raycaster.errors import UserError
 from raycaster.verif.formal.faults import model_with_faults, outcome
 from raycaster.verif.formal.properties import PROPERTIES
 from raycaster.verif.formal.prove import main
-from raycaster.verif.formal.prover import Property, Result, missing_tools, prove
+from raycaster.verif.formal.prover import Property, Result, prove
 from raycaster.verif.formal.wrapper import completed, constants
-
-pytestmark = pytest.mark.skipif(bool(missing_tools()), reason=f"not installed: {', '.join(missing_tools())}")
 
 FAULTY = [proof for proof in PROPERTIES if proof.faults]
 """Properties with planted faults, each of a design that is proved quickly."""

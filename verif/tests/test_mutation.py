@@ -21,7 +21,6 @@ from raycaster.rtl.common.interfaces import SceneBus
 from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.engine.divider_step import divider_step
 from raycaster.rtl.scene.scene_word import scene_word
-from raycaster.verif.formal.prover import missing_tools
 from raycaster.verif.mutation.mutate import (
     LEAST_CAUGHT,
     Expectation,
@@ -37,8 +36,6 @@ from raycaster.verif.mutation.mutate import (
     share_caught,
 )
 from raycaster.verif.recording import record as record_run
-
-pytestmark = pytest.mark.skipif(bool(missing_tools()), reason=f"not installed: {', '.join(missing_tools())}")
 
 WIDTH, COUNT = 3, 2
 MUTANTS = 30
