@@ -151,7 +151,7 @@ def test_every_screen(golden, rows, random):
     config = configure(engine="beam", rows=rows, turn=True, materials=True, patterns=True, reflections=2)
     if rows == 180:
         config = replace(config, scale=2)
-    assert_drawn(golden, config, random_words(random, config))
+    assert_drawn(golden, config, random_words(random, config), f"{rows} rows")
 
 
 def test_does_not_run(golden):
