@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Parts of MyHDL that it does not publish: its classes under our names, and a function for each private attribute.
 
-No other file of the package touches them. They may change with any version of MyHDL, so its version is pinned, and
-`verif/tests/test_hdl_elaboration.py` has a test of each.
+No other file of the package touches them. They may change with any version of MyHDL, so its version is pinned.
 """
 
 import importlib

@@ -114,10 +114,15 @@ def forgotten_signals() -> Iterator[None]:
         yield
 
 
-@pytest.fixture
-def random(request: pytest.FixtureRequest) -> np.random.Generator:
-    """Random numbers, the same for each test; the report of a failing test says how to repeat it."""
+@pytest.fixture(autouse=True)
+def reported_seed(request: pytest.FixtureRequest) -> None:
+    """Let the report of a failing test say how to repeat it with the same random numbers."""
     request.node.add_report_section("setup", "random numbers", repeat())
+
+
+@pytest.fixture
+def random() -> np.random.Generator:
+    """Random numbers, the same for each test."""
     return np.random.default_rng(seed())
 
 
@@ -161,18 +166,6 @@ def bench(output: Path) -> Bench:
     return run
 
 
-@pytest.fixture
-def refuses() -> Callable[..., str]:
-    """Return a function that calls a command's function with options, which must fail with one line, and returns it."""
-
-    def refused(main: Callable[..., int | None], *options: str) -> str:
-        done = called(*options, cwd=Path.cwd(), program=lambda words: main(words) if words else main())
-        assert (done.returncode, done.stderr[:7], done.stderr.count("\n")) == (2, "error: ", 1), done
-        return done.stderr
-
-    return refused
-
-
 def called(*words: str, cwd: Path, program: Callable[[list[str]], int | None] = main) -> subprocess.CompletedProcess:
     """Run a command line in a directory, as a shell would, but in this process, where everything is loaded."""
     out, err = io.StringIO(), io.StringIO()
@@ -184,6 +177,13 @@ def called(*words: str, cwd: Path, program: Callable[[list[str]], int | None] = 
     ):
         run_command(lambda: program(list(words)))
     return subprocess.CompletedProcess(words, ended.value.code, out.getvalue(), err.getvalue())
+
+
+def refused(program: Callable[[list[str]], int | None], *words: str, cwd: Path = Path()) -> str:
+    """Call a command's function, which must fail with one line, and return the line."""
+    done = called(*words, cwd=cwd, program=program)
+    assert (done.returncode, done.stderr[:7], done.stderr.count("\n")) == (2, "error: ", 1), done
+    return done.stderr
 
 
 def refusal(directory: Path, *words: str, late: bool = False) -> str:
@@ -298,9 +298,3 @@ def page_state(page: Any, tab: str) -> dict:
     """Return the state of a tab of the web page once it has a result."""
     page.wait_for_function(f"RayCaster.state.{tab}?.done || RayCaster.state.{tab}?.error")
     return page.evaluate(f"RayCaster.state.{tab}")
-
-
-@pytest.fixture
-def scenes() -> Path:
-    """Directory of scene files."""
-    return ROOT / "scenes"

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import os
 import subprocess
+from collections.abc import Sequence
+from difflib import ndiff
 from importlib.metadata import version
 from pathlib import Path
 
@@ -18,6 +20,8 @@ rename package ""
 proc unknown args {
     # The index of a port's bit, as in KEY[0], which Quartus does not evaluate.
     if {[string is integer $args]} { return "\[$args\]" }
+    # Such a call is shown where its result is used.
+    if {[string match get_* [lindex $args 0]]} { return "\[$args\]" }
     puts [join $args \t]
     return [lindex $args end]
 }
@@ -42,12 +46,16 @@ def tcl_calls(directory: Path, script: Path, settings: str = "") -> list[list[st
     return [line.split("\t") for line in done.stdout.splitlines()]
 
 
-def compare_calls(name: str, calls: list[list[str]]) -> None:
+def compare_calls(name: str, calls: list[list[str]], base: Sequence[list[str]] = ()) -> None:
     """Compare calls, except the project's version, with those kept under a name.
 
-    With `KEEP=1` in the environment, they are kept first.
+    If there is a base, only the differences from its calls are kept. With `KEEP=1` in the environment, they are kept
+    first.
     """
-    text = "".join(" | ".join(call).rstrip() + "\n" for call in calls).replace(version("raycaster"), "VERSION")
+    before, lines = ([" | ".join(call).rstrip() + "\n" for call in one] for one in (base, calls))
+    if base:
+        lines = [line for line in ndiff(before, lines) if line[0] in "+-"]
+    text = "".join(lines).replace(version("raycaster"), "VERSION")
     path = KEPT / f"{name}.txt"
     if os.environ.get("KEEP"):
         path.write_text(text)

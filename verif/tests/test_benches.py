@@ -30,7 +30,6 @@ DESIGNS = {
 """Simulator, design and scene."""
 
 
-@pytest.mark.usefixtures("random")
 @pytest.mark.slow_sets(quick=["register-exact", "traffic-exact"])
 @pytest.mark.parametrize("design", DESIGNS)
 @pytest.mark.parametrize("name", ["register", "traffic"])

@@ -37,22 +37,12 @@ def test_the_software_draws_every_scene(tmp_path):
         assert all(one["frame_s"] > 0 for one in measure_software(scene, TINY, tmp_path))
 
 
-@pytest.mark.parametrize(
-    ("right", "wrong"),
-    [
-        ("n * best_e >= best_n * e", "n * best_e > best_n * e"),
-        ("(beyond == 0 && ray.met >> r->axis & 1)", "beyond == 0"),
-        ("OTHER_AXES[hit.axis][0]] / cell & 1", "OTHER_AXES[hit.axis][0]] / cell & 2"),
-        ("way > (r.high[u] - start[u]) * e", "way >= (r.high[u] - start[u]) * e"),
-        ("n * point_e < e", "n * point_e <= e"),
-    ],
-)
-def test_software_that_draws_something_else(right, wrong, tmp_path, monkeypatch):
+def test_software_that_draws_something_else(tmp_path, monkeypatch):
     """A fault that shows in any scene stops the measurement."""
-    text = beside.SOFTWARE.read_text()
+    text, right = beside.SOFTWARE.read_text(), "n * best_e >= best_n * e"
     assert right in text
     changed = tmp_path / "golden.cpp"
-    changed.write_text(text.replace(right, wrong))
+    changed.write_text(text.replace(right, "n * best_e > best_n * e"))
     monkeypatch.setattr(beside, "SOFTWARE", changed)
     monkeypatch.delenv(MODELS_VARIABLE)
     with pytest.raises(UserError, match=r"^golden.cpp: draws \d+ pixels unlike the golden model$"):

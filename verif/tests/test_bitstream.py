@@ -9,7 +9,7 @@ from subprocess import CompletedProcess
 
 import numpy as np
 import pytest
-from conftest import SMALL_SCENE
+from conftest import SMALL_SCENE, refused
 from small_program import write_program
 
 from raycaster.configuration import configure
@@ -235,7 +235,7 @@ def test_too_slow_gets_one_line(tmp_path, monkeypatch, capsys, clk, shift_clk, c
         ("while true; do :; done", True, "openFPGALoader took more than 0.2 s on the .*"),
     ],
 )
-def test_nothing_is_loaded(script, made, complaint, tmp_path, monkeypatch, refuses, stand_in):
+def test_nothing_is_loaded(script, made, complaint, tmp_path, monkeypatch, stand_in):
     """Each reason is reported in one line; the script stands in for openFPGALoader."""
     monkeypatch.setattr(bitstream, "LOAD_TIMEOUT", 0.2)
     if script is not None:
@@ -243,7 +243,7 @@ def test_nothing_is_loaded(script, made, complaint, tmp_path, monkeypatch, refus
     if made:
         (tmp_path / "ulx3s").mkdir()
         (tmp_path / "ulx3s" / "ulx3s.bit").touch()
-    error = refuses(bitstream.main, "--flash", "--output", str(tmp_path))
+    error = refused(bitstream.main, "--flash", "--output", str(tmp_path))
     assert re.fullmatch(f"error: {complaint}\n", error), error
 
 

@@ -81,23 +81,6 @@ def explanation(what: str) -> Explanation:
 EXPLAINED = [*map(explanation, ("/^else: if .on. begin$/", "/on==0/", "value [0, 14-15]", "on 1->0"))]
 
 
-def test_counts_are_read(counts):
-    """Every point has its source line; points of the bench are left out."""
-    _, alone = counts
-    assert {(point.kind, point.what): times for point, times in alone.items()} == {
-        ("branch", "if: if (on) begin"): 7,
-        ("branch", "else: if (on) begin"): 0,
-        ("expr", "(on==0) => 0"): 0,
-        ("toggle", "value[0]:0->1"): 4,
-        ("toggle", "value[0]:1->0"): 0,
-        ("toggle", "value[15]:0->1"): 0,
-        ("toggle", "on:1->0"): 0,
-    }
-    assert {point.toggle for point in alone if point.toggle} == {
-        ("value", 0, "0->1"), ("value", 0, "1->0"), ("value", 15, "0->1"), ("on", None, "1->0"),
-    }  # fmt: skip
-
-
 def test_an_unexplained_hole_fails(counts, capsys):
     """The hole is reported with its file and line, and bits of one signal together."""
     _, alone = counts

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import importlib.metadata
-import json
 import re
 import shlex
 import shutil
@@ -33,7 +32,6 @@ from raycaster.fpga.cells import Area
 from raycaster.golden.picture import shown
 from raycaster.options import CommandParser
 from raycaster.rtl import engine
-from raycaster.verif.formal.properties import PROPERTIES
 
 NOMINAL = {"74.0 MHz", "74.25 MHz"}
 """Frequencies that are specified, not measured."""
@@ -152,61 +150,10 @@ def test_timing_diagrams_match_the_configuration():
     assert cycles["video_and_counters", "start_screen", "start_row"] == config.screen_geometry.row_cycles
 
 
-class FakeFrame(dict):
-    """A stand-in for a waveform: lanes given as text."""
-
-    def texts(self, lane: timing.Lane, cycles: range) -> list[str]:
-        return [self[lane.name][cycle] for cycle in cycles]
-
-    def has_data(self, lane: timing.Lane) -> bool:
-        return lane.name == "number"
-
-
-FAKE = timing.Diagram("fake", {"group": "strobe number"}, lambda _: [(0, 4), (6, 9)], (("strobe", 0, "strobe", 1),))
-
-
-def test_wave_json():
-    """Gaps, repeated and unknown values, and an arrow across a gap."""
-    source = json.loads(timing.wave_json(FAKE, FakeFrame(strobe="x010000100", number="xx5577778")))
-    clock, cycle, _, (group, strobe, number) = source["signal"]
-    assert (clock["wave"], group) == ("p...|...", "group")
-    assert cycle == {"name": "cycle", "wave": "2...|2..", "data": ["0", "6"]}
-    assert strobe == {"name": "strobe", "wave": "x010|.10", "node": "..A...B"}
-    assert number == {"name": "number", "wave": "x.5.|5.5", "data": ["5", "7", "8"]}
-    assert source["edge"] == ["A~>B 5"]
-    with pytest.raises(UserError, match="strobe rises 1 times in the diagram, not 2"):
-        timing.wave_json(FAKE, FakeFrame(strobe="001000000", number=9 * "1"))
-
-
 @pytest.fixture(scope="module")
 def values():
     """All generated texts, by their names in the pages' markers."""
     return facts.facts() | tables.tables() | proofs.proofs()
-
-
-def test_the_table_of_proved_blocks():
-    """Proofs are in the right columns, and the exact engine's rows are exactly its blocks."""
-    rows = [line.split(" | ") for line in proofs.proved_blocks().splitlines()]
-    blocks = {row[1]: row for row in rows}
-    full = "`tester-products` and lemmas, `shadow-wiring` and lemmas, `unit-wiring` and lemmas"
-    assert blocks["`rect_tester`"][2:4] == [full, "`tester-exact` (1 to 4 bits)"]
-    assert blocks["`processor_host`"][2:] == ["", "", "", "in frames |"]
-    assert {path.stem for path in (ROOT / "rtl" / "exact").glob("[!_]*.py")} == {
-        row[1].strip("`") for row in rows if row[0] == "| exact"
-    }
-
-
-@pytest.mark.parametrize(
-    ("name", "most_reflections", "scale"),
-    [
-        ("eye-exact", 4, (True, "full width, 0 to 4 reflections")),
-        ("eye-exact", 2, (True, "full width, 0 to 2 reflections")),
-        ("avalon-agent", 4, (False, "2 rectangles, 1 and 2 reflections")),
-    ],
-)
-def test_sizes_of_proofs(name, most_reflections, scale):
-    found = [proof for proof in PROPERTIES if proof.name == name and proof.design.reflections <= most_reflections]
-    assert proofs.scale(found) == scale
 
 
 def test_every_generated_text_is_on_a_page(values):

@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
+import unicorn
 from conftest import called
 from host_software import CONFIG, FIRE, Registers, Session, compile_library
 
@@ -24,7 +25,6 @@ PAGE = 0x1000
 
 @pytest.fixture(scope="module")
 def firmware(tmp_path_factory) -> Firmware:
-    pytest.importorskip("ziglang", reason="the extra play is not installed")
     return build_firmware(tmp_path_factory.mktemp("firmware") / "firmware")
 
 
@@ -37,7 +37,6 @@ class Machine:
     """
 
     def __init__(self, words: Path, script: tuple[int, ...], registers: Registers | None = None):
-        unicorn = pytest.importorskip("unicorn")
         self._script = script
         self._registers = registers or Registers(CONFIG)
         self._busy = self._instructions = 0

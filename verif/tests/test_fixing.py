@@ -25,7 +25,6 @@ from raycaster.fit.fixing import FIT, SCOPES, design_of, fix, fixed_rectangle
 from raycaster.fit.unneeded import at_the_edge, covered, needed, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene
 from raycaster.fpga import fit as search
-from raycaster.fpga.cells import FAMILIES, measure
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.world import OTHER_AXES, Rectangles
@@ -34,7 +33,7 @@ from raycaster.rtl.beam.beam_caster import known_facet, known_growth
 from raycaster.scene import Camera, Rectangle, Scene, dump_scene, load_scene
 from raycaster.sim.simulator import SimulationError
 from raycaster.verif.random_scenes import random_scene
-from raycaster.verif.seeds import repeat, seed
+from raycaster.verif.seeds import seed
 
 SCENES = ROOT / "scenes"
 BOXES = SCENES / "boxes.toml"
@@ -111,9 +110,8 @@ def test_needed_rectangles_suffice(engine):
     assert not any(np.array_equal(without({index}), picture) for index in met)
 
 
-def test_random_cameras_need_nothing_that_was_left_out():
+def test_random_cameras_need_nothing_that_was_left_out(random):
     """This holds for `rects` in random scenes with coplanar rectangles, some at x = 0, and with random cameras."""
-    random = np.random.default_rng(seed())
     left_out = 0
     for _ in range(30):
         corners = random.choice([0, 60, 200, 400, 511], size=(8, 2, 3))
@@ -127,14 +125,13 @@ def test_random_cameras_need_nothing_that_was_left_out():
             within, behind = set(covered(table)), unreachable(table, reflections)
             met, _ = needed(config, scene, reflections)
             for one, never in zip(met, behind, strict=True):
-                assert not one & (within | never), repeat()
+                assert not one & (within | never)
                 left_out += len(within | never)
     assert left_out > 300
 
 
-def test_shadows_need_no_more():
+def test_shadows_need_no_more(random):
     """With random lights, rectangles that are neither seen nor shade are unneeded; those at the edge never shade."""
-    random = np.random.default_rng(seed())
     config = configure(engine="exact", screen="tiny", reflections=1, materials=True, light=True, allow_underrun=True)
     shading, at_edge = 0, 0
     for number in range(20):
@@ -144,12 +141,12 @@ def test_shadows_need_no_more():
         if scene.light is None or not kept:
             continue
         edge = at_the_edge(Rectangles.of_scene(scene))
-        assert not edge & set().union(*shades), (number, repeat())
+        assert not edge & set().union(*shades), number
         shading, at_edge = shading + len(set().union(*shades)), at_edge + len(edge)
         fewer = scene.model_copy(update={"rect": tuple(scene.rect[index] for index in sorted(kept))})
         pictures = [ExactModel().render(one, config.screen_geometry) for one in (scene, fewer)]
-        assert np.array_equal(*pictures), (number, repeat())
-    assert min(shading, at_edge) > 5, repeat()
+        assert np.array_equal(*pictures), number
+    assert min(shading, at_edge) > 5
 
 
 # Fixed designs --------------------------------------------------------------------------------------------------------
@@ -197,9 +194,7 @@ def test_omissions_say_why():
     def omissions(name, scope, **options):
         return dict(map(dataclasses.astuple, fix(SCENES / f"{name}.toml", options, scope).omissions))
 
-    boxes = omissions("boxes", "all", screen="tiny")
-    assert boxes["rectangle memory: 36 words, three copies each"] == "rectangles are constants"
-    assert boxes["ceiling"] == "no ray of the picture meets it first"
+    assert omissions("boxes", "all", screen="tiny")["ceiling"] == "no ray of the picture meets it first"
     assert "memory of camera and background" not in omissions("matte", "rects")
     assert "tests of the reflection against green slab, side" in omissions("floor", "all")
 
@@ -208,20 +203,10 @@ def test_without_a_scope_a_design_is_general():
     assert design_of(BOXES, {"units": "64"}, None, Console(quiet=True)) == design_for(BOXES, {"units": "64"})
 
 
-def test_a_scene_of_one_rectangle_that_nobody_sees(tmp_path):
-    """The design keeps one rectangle, the least that an engine can have."""
-    path = tmp_path / "nothing.toml"
-    path.write_text(NOTHING)
-    for scope, engine in itertools.product(SCOPES, ENGINES):
-        config = fix(path, {"engine": engine, "screen": "tiny"}, scope).design.configuration
-        assert config.rectangles == 1
-
-
 @pytest.mark.parametrize("camera", [False, True])
-def test_known_values_of_fixed_rectangles(camera):
+def test_known_values_of_fixed_rectangles(camera, random):
     """Known facets and growths equal the distances and products computed for random cameras or the fixed one."""
     config = fixed_config(32, "beam", camera)
-    random = np.random.default_rng(seed())
     for number, rectangle in enumerate(config.fixed.rectangles):
         facet, growth = known_facet(number, config), known_growth(number, config)
         assert set(facet) == {"usable", "axis", "colour"} | ({"distance"} if camera else set())
@@ -239,8 +224,8 @@ def test_known_values_of_fixed_rectangles(camera):
                 **{f"low_{name}": (low[axis] - eye[axis]) * step for name, axis in (("p", p), ("q", q))},
                 **{f"high_{name}": (high[axis] - eye[axis]) * step for name, axis in (("p", p), ("q", q))},
             }
-            assert facet == {name: seen[name] for name in facet}, repeat()
-            assert growth == {name: grown[name] for name in growth}, repeat()
+            assert facet == {name: seen[name] for name in facet}
+            assert growth == {name: grown[name] for name in growth}
 
 
 # Whole designs --------------------------------------------------------------------------------------------------------
@@ -316,21 +301,6 @@ def test_fixed_rectangles_have_no_memory(engine, scope, tmp_path):
     names = {path.stem for path in files}
     assert not {"rect_mem", "rect_slot", "rect_sorter"} & names
     assert ("camera_mem" in names) == (scope == "rects")
-
-
-@pytest.mark.slow
-def test_two_boxes_cost_less_than_half(tmp_path):
-    """The fixed design has less than half the tables and registers, and at most half the multipliers.
-
-    It needed only a quarter while the general design kept rectangles in registers.
-    """
-    scene = ROOT / "examples" / "two_boxes.toml"
-    family = FAMILIES["ecp5"]
-    general = measure(configure(engine="exact"), family, tmp_path / "general")
-    fixed = measure(fix(scene, {"engine": "exact"}, "all").design.configuration, family, tmp_path / "fixed")
-    assert fixed.tables < general.tables / 2
-    assert fixed.registers < general.registers / 2
-    assert fixed.multipliers <= general.multipliers / 2
 
 
 # Smallest designs -----------------------------------------------------------------------------------------------------

@@ -7,15 +7,14 @@ import json
 from dataclasses import replace
 
 import pytest
+from conftest import refused
 
 from raycaster.errors import UserError
 from raycaster.verif.formal.faults import model_with_faults, outcome
 from raycaster.verif.formal.properties import PROPERTIES
 from raycaster.verif.formal.prove import main
-from raycaster.verif.formal.prover import Property, Result, missing_tools, prove
+from raycaster.verif.formal.prover import Property, Result, prove
 from raycaster.verif.formal.wrapper import completed, constants
-
-pytestmark = pytest.mark.skipif(bool(missing_tools()), reason=f"not installed: {', '.join(missing_tools())}")
 
 FAULTY = [proof for proof in PROPERTIES if proof.faults]
 """Properties with planted faults, each of a design that is proved quickly."""
@@ -120,9 +119,9 @@ def test_every_property_has_a_fault():
     assert {proof.name for proof in FAULTY} == {proof.name for proof in PROPERTIES}
 
 
-def test_unknown_property(refuses):
+def test_unknown_property():
     """The error lists the known properties."""
-    assert "got no-such, expected one of video-timing" in refuses(main, "--property", "no-such")
+    assert "got no-such, expected one of video-timing" in refused(main, "--property", "no-such")
 
 
 def test_kept_proofs_are_not_repeated(output, monkeypatch, names_for_digests):

@@ -3,44 +3,40 @@
 
 import re
 
-import numpy as np
 import pytest
 from hdl_blocks import Pair, converted, everything, everything_arguments, inverted, step
 from myhdl import ConcatSignal, always_comb, block
 
 from raycaster.hdl.hierarchy import Port
 from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import bit, signed, tied, unconnected, unsigned
+from raycaster.hdl.signals import bit, tied, unconnected, unsigned
 from raycaster.sim.simulator import find_tool
-from raycaster.verif.seeds import repeat, seed
 
 
 @pytest.mark.parametrize("simulator", ["icarus", "verilator"])
-def test_every_kind_of_connection_works(simulator, tmp_path, monkeypatch):
+def test_every_kind_of_connection_works(simulator, tmp_path, monkeypatch, random):
     """Both simulators of Verilog agree with MyHDL."""
     for name, value in find_tool("verilator").environment.items():
         monkeypatch.setenv(name, value)
     monkeypatch.setattr(Leaf, "simulator", simulator)
     leaf = Leaf(everything, everything_arguments, tmp_path)
-    random = np.random.default_rng(seed())
     names = {"word": 256, "pair_high": 16, "pair_low": 16}
     stimulus = [{name: int(random.integers(limit)) for name, limit in names.items()} for _ in range(200)]
     outputs = leaf.run_both(stimulus, settled=4)
     for cycle in range(4, 200):
         word, pair = stimulus[cycle - 1]["word"], stimulus[cycle]
         joined = (word + 3) % 16 | ((word >> 4) + 15) % 16 << 4
-        assert outputs[cycle]["joined"] == joined, repeat()
-        assert outputs[cycle]["swapped_high"] == pair["pair_low"], repeat()
-        assert outputs[cycle]["swapped_low"] == pair["pair_high"], repeat()
+        assert outputs[cycle]["joined"] == joined
+        assert outputs[cycle]["swapped_high"] == pair["pair_low"]
+        assert outputs[cycle]["swapped_low"] == pair["pair_high"]
         # The previous cycle's carry clears the counter's input.
         carried = outputs[cycle - 1]["count"] == 0
-        assert outputs[cycle]["count"] == (1 if carried else (word % 16 + 1) % 16), repeat()
+        assert outputs[cycle]["count"] == (1 if carried else (word % 16 + 1) % 16)
 
 
 def test_modules_ports_and_instances(tmp_path):
     modules = converted(everything(**everything_arguments()), tmp_path)
     assert list(modules) == ["step", "swap", "everything"], "each follows those that it instantiates, equal ones once"
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["everything.v", "step.v", "swap.v"]
     assert modules["everything"].instances == {"step_0": "step", "step_1": "step", "step_2": "step", "swap": "swap"}
     assert modules["step"].instances == {}
     assert set(modules["everything"].ports) == {
@@ -54,36 +50,15 @@ def test_modules_ports_and_instances(tmp_path):
         Port("count", 4, False, True),
     }
     text = modules["everything"].path.read_text()
-    assert re.findall(r"^(\w+) (\w+_i) \($", text, re.M) == [
-        ("step", "step_0_i"),
-        ("step", "step_1_i"),
-        ("step", "step_2_i"),
-        ("swap", "swap_i"),
-    ]
+    assert re.findall(r"^\w+ (\w+)_i \($", text, re.M) == list(modules["everything"].instances)
     assert text.count(".wrapped()") == 2, "two of the carries are not read"
     assert "// A register.\nalways @(posedge clk) begin" in modules["step"].path.read_text()
-
-
-def test_a_signed_port_is_signed(tmp_path):
-    @block
-    def double(value, doubled):
-        @always_comb
-        def add():
-            doubled.next = value + value
-
-        return (add,)
-
-    modules = converted(double(signed(4), signed(5)), tmp_path)
-    assert modules["double"].ports == (Port("value", 4, True, False), Port("doubled", 5, True, True))
 
 
 def test_a_block_converts_alike_wherever_it_stands(tmp_path):
     within = converted(everything(**everything_arguments()), tmp_path / "within")
     alone = converted(step(bit(), unsigned(4), unsigned(4), unsigned(4), bit()), tmp_path / "alone")
-    again = converted(everything(**everything_arguments()), tmp_path / "again")
     assert within["step"].path.read_text() == alone["step"].path.read_text()
-    for name, module in within.items():
-        assert module.path.read_text() == again[name].path.read_text()
 
 
 @block

@@ -110,9 +110,3 @@ def convert_text(name: str, ports: str, body: str, signals: list, directory) -> 
 def test_keywords_are_no_names(name, port, said, tmp_path):
     with pytest.raises(UserError, match=rf"clash\.py:\d+: {name}: {said}; rename it"):
         convert_text(name, f"{port}, result", RESULT.format(port), [unsigned(4), unsigned(4)], tmp_path)
-
-
-def test_a_signal_without_a_width_is_refused(tmp_path):
-    body = "count = Signal(0)\n" + REGISTER.format("count", "word") + RESULT.format("count")
-    with pytest.raises(UserError, match=r"clash\.py:8: top: count has no width; write intbv"):
-        convert_text("top", "clk, word, result", body, [bit(), unsigned(4), unsigned(4)], tmp_path)

@@ -46,46 +46,36 @@ def process(statements: str) -> str:
 @pytest.mark.parametrize(
     "statements",
     [
-        "result.next = min(a, b)",
         "result.next = abs(a)",
         "result.next = sum([a, b])",
-        "result.next = (a + b) >> 1",
         "result.next = a if a + b else b",
-        "result.next = memory[a - b]",
         "result.next[index + a] = 1",
         "while a - b:\n    result.next = 0",
         "if a:\n    if b:\n        result.next = 0\n    elif (a << 1) == b:\n        result.next = 1",
-        "result.next = (a - 1) % 8",
         "result.next = (a * b) >> index",
         "result.next = step + a > b",
         "result.next = (a & b)[4:]",
         "result.next = (a + b)[0]",
         "result.next = ~index",
-        "result.next = a / b",
         "def helper(c):\n    pass\nresult.next = a",
         "result.next = [a, b][0]",
     ],
 )
 def test_other_wrong_forms_are_refused(statements, tmp_path):
+    """These are not in the manual's table."""
     assert refusal_of(process(statements), tmp_path)
 
 
 @pytest.mark.parametrize(
     ("body", "reason"),
     [
-        ("nothing = unsigned(4)\nadding = add(a, nothing, result, unconnected(1))\n", "nothing: Signal is not driven"),
         ("lost = bit()\n" + process("lost.next = a[0]\nresult.next = b"), "lost: Signal is driven but not read"),
-        ("fixed = tied(0, 4)\nadding = add(a, b, fixed, unconnected(1))\n", "fixed is a slice or a constant"),
         (
             "part = b(4, 0)\nadding = add(a, index, part, unconnected(1))\n",
             "Signal has multiple drivers: total; connect",
         ),
         ("adding = add(a, b, result, unconnected(1))\n" + process("result.next = a"), "result has two drivers"),
         ("both = [a, b]\n" + process("result.next = both[index]"), "a process indexes both, but both[0] is also a"),
-        (
-            "mixed = [unsigned(4), unsigned(3)]\n" + process("result.next = mixed[index]"),
-            "a process indexes mixed, whose",
-        ),
     ],
 )
 def test_a_signal_that_cannot_be_printed_is_refused(body, reason, tmp_path):

@@ -4,18 +4,13 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib.util
 from collections.abc import Mapping
 from fractions import Fraction
 
 import pytest
+import z3
 
 from raycaster.verif.formal.lemmas import LEMMAS, Lemma, prove_lemma
-from raycaster.verif.formal.prover import missing_tools
-
-pytestmark = pytest.mark.skipif(
-    bool(missing_tools()) or importlib.util.find_spec("cvc5") is None, reason="not installed: the extra `formal`"
-)
 
 BY_LABEL = {lemma.label: lemma for lemma in LEMMAS}
 
@@ -92,7 +87,6 @@ def contradicted(lemma: Lemma, values: Mapping[str, Fraction | bool]) -> bool:
 
 def counterexample(lemma: Lemma, sorts: Mapping[str, str]) -> dict[str, Fraction | bool] | None:
     """Return values of these variables that contradict a lemma, from z3's Python interface, or None."""
-    z3 = pytest.importorskip("z3")
     solver = z3.Solver()
     solver.set("timeout", 60_000)
     solver.from_string(lemma.smt().partition("(check-sat)")[0])

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import json
 import re
-import sys
 from importlib import import_module
 
 import numpy as np
@@ -131,9 +130,3 @@ def test_bad_options_get_one_line(options, clock, complaint, tmp_path):
     with pytest.raises(UserError, match=rf"^{complaint}$"):
         add_ray_caster(soc, configure(screen="tiny", rectangles=3, **options), tmp_path / "verilog")
     assert not any(tmp_path.iterdir())
-
-
-def test_the_example_without_its_argument_explains_it(tmp_path):
-    done = run_tool(tmp_path, sys.executable, str(ROOT / "examples" / "litex_soc.py"))
-    assert done.returncode == 2
-    assert done.stdout.startswith("usage: litex_soc.py [-h] directory")

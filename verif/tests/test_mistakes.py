@@ -14,8 +14,6 @@ from raycaster.sim.simulator import MODELS_VARIABLE
 OF_SCENES = [
     ("[camera", "", "is not TOML"),
     ("rows = 180" + FLOOR_SCENE, "", "180 rows need the beam engine"),
-    (FLOOR_SCENE.replace("511, 0]", "511, 1]"), "", "rect"),
-    (FLOOR_SCENE.replace("256", "512"), "", "camera"),
     (FLOOR_SCENE + FLOOR_SCENE[FLOOR_SCENE.index("[[rect") :] * 12, "", "13 rectangles, but the hardware holds 12"),
     (TURNED_SCENE, "--engine seed", "the seed engine measures depth along x, so its camera cannot turn"),
     (TURNED_SCENE, "FIX=all ENGINE=seed", "the seed engine measures depth along x"),
@@ -26,13 +24,24 @@ OF_SCENES = [
 """Text of a scene, options of `sim` and the complaint."""
 
 OF_COMMANDS = {
+    "": [
+        ("smi", "unknown command: smi (did you mean sim?); raycaster --help lists all"),
+        ("soak", "unknown command: soak (did you mean verify soak?); raycaster --help lists all"),
+        ("verify sok", "unknown command: verify sok (did you mean verify soak?); raycaster --help lists all"),
+        ("xyzzy", "unknown command: xyzzy; raycaster --help lists all"),
+    ],
     "sim": [
+        ("--enigne beam", "unknown option: --enigne (did you mean --engine?); see raycaster sim --help"),
+        ("--xyzzy", "unknown option: --xyzzy; see raycaster sim --help"),
+        ("ENGIN=beam", "ENGIN: raycaster sim does not take it (did you mean ENGINE?); see raycaster sim --help"),
+        ("SIMM=icarus", "SIMM: raycaster sim does not take it (did you mean SIM?); see raycaster sim --help"),
+        ("mirror_rom", "mirror_rom: no such file or packaged scene (did you mean mirror_room?)"),
+        ("boxs.toml", "boxs.toml: cannot be read: No such file or directory (did you mean boxes?)"),
+        ("--engine baem", "engine: expected seed, exact or beam, got baem (did you mean beam?)"),
+        ("--rectangles 99", "rectangles: expected 32 or less, got 99"),
         ("none.toml", "none.toml: cannot be read"),
         ("boxes de2/boxes.toml", "same file name"),
         ("mine.toml --units 7", "units: 7 does not divide"),
-        ("mine.toml --units 4", "row budget: "),
-        ("mine.toml --rows 180", "rows: "),
-        ("mine.toml --screen tiny --rows 240", "rows: "),
         ("mine.toml --simulator questa", "simulator: expected verilator or icarus, got questa"),
         ("--gates mine.toml --cells xilinx", "cells: expected ecp5 or ice40 or gowin, got xilinx"),
     ],
@@ -61,10 +70,19 @@ OF_COMMANDS = {
         ("--output /proc/x", "/proc/x"),
         ("--output " + "x" * 300, "File name too long"),
         ("--output mine", "has files in it"),
+        ("--bus pci", "bus: expected avalon, axi4lite, wishbone or apb, got pci"),
+        ("PREFIX=9x", "prefix: expected the beginning of a Verilog name, such as ray_caster_, got 9x"),
     ],
-    "registers": [("--output /proc/x", "/proc/x"), ("--output mine", "has files in it")],
+    "registers": [
+        ("--output /proc/x", "/proc/x"),
+        ("--output mine", "has files in it"),
+        ("--rectangles x", "rectangles: expected a whole number, got x"),
+    ],
+    "game": [("--frames 0", "frames: expected at least 1, got 0")],
+    "web": [("--keep web.json", "keep: there is nothing to keep without --measure")],
     "commands": [("--output file", "file")],
     "quartus": [
+        ("", "board: expected de10_lite, de1_soc, de2 or de2_115, got none"),
         ("--board de0", "board: expected de10_lite, de1_soc, de2 or de2_115, got de0 (did you mean de2?)"),
         ("none.toml --board de2", "none.toml: cannot be read: No such file or directory"),
         ("--board de2 --colour-bits 9", "colour_bits: "),
@@ -86,7 +104,6 @@ OF_COMMANDS = {
     ],
     "area": [
         ("--family ice40", "family: expected one of ecp5, cycloneive, cyclonev, got ice40"),
-        ("--units 7", "units: 7 does not divide the 320 columns"),
         ("--features --engine beam", "features: counts a fixed set of designs"),
     ],
     "verify dvi": [
@@ -113,6 +130,11 @@ LATE = {
     "bitstream": DVI,
     "verify dvi": DVI,
     "verify soak": [("--build file", "file")],
+    "tinytapeout boxes": [
+        ("--rows 240", "rows: a Tiny Tapeout project shows one pixel per clock; choose ROWS=120, 96 or 60, or "),
+        ("--colour-bits 3", "colour_bits: the Pmod has 2 pins per colour, not 3"),
+        ("--bus apb", "bus: the top drives the registers itself, by Avalon-MM; leave out apb"),
+    ],
     "fit boxes": [("--error 0.0001 --engine seed --fraction-bits 0", "no design shows ")],
 }
 """Mistakes that show once the command has announced its work."""

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import refused
 
 from raycaster.errors import UserError
 from raycaster.hdl.leaf import Leaf
@@ -20,7 +21,6 @@ from raycaster.rtl.common.interfaces import SceneBus
 from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.engine.divider_step import divider_step
 from raycaster.rtl.scene.scene_word import scene_word
-from raycaster.verif.formal.prover import missing_tools
 from raycaster.verif.mutation.mutate import (
     LEAST_CAUGHT,
     Expectation,
@@ -36,8 +36,6 @@ from raycaster.verif.mutation.mutate import (
     share_caught,
 )
 from raycaster.verif.recording import record as record_run
-
-pytestmark = pytest.mark.skipif(bool(missing_tools()), reason=f"not installed: {', '.join(missing_tools())}")
 
 WIDTH, COUNT = 3, 2
 MUTANTS = 30
@@ -189,5 +187,5 @@ def test_the_command_reports(tmp_path, capsys, monkeypatch):
     assert result["module"] == "ray_mem" and len(result["mutants"]) == 20
 
 
-def test_unknown_modules_are_refused(refuses):
-    assert "got adder, expected one of" in refuses(main, "--module", "adder")
+def test_unknown_modules_are_refused():
+    assert "got adder, expected one of" in refused(main, "--module", "adder")

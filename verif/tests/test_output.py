@@ -3,10 +3,7 @@
 
 from __future__ import annotations
 
-import ast
-import contextlib
 import errno
-import io
 import os
 import re
 import signal
@@ -15,14 +12,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, SMALL_SCENE, called, refusal
+from conftest import SMALL_SCENE, called, refusal, refused
 from rich.text import Text
 
 from raycaster import output
-from raycaster.cli.__main__ import main
-from raycaster.options import run_command
 from raycaster.output import Console, Table, emptied, printable, replaced
-from raycaster.scene import Scene, load_scene
+from raycaster.scene import load_scene
 
 HOSTILE = "[bold]x[/nope]\x1b[31m :smile: [link=http://x]y\x9b2J\u202e\nz"
 """A two-line name with broken markup and control sequences."""
@@ -73,13 +68,6 @@ def test_only_what_a_command_made_is_removed(tmp_path: Path):
             raise AssertionError("it must be refused before anything is lost")
     assert (kept / "thesis").exists()
     assert (made / "new").exists()
-
-
-def test_nothing_else_removes_directories():
-    """Commands leave this to the helper, except a function that removes a directory that it created itself."""
-    sources = [path for path in ROOT.rglob("*.py") if not {".venv", "build", "tests"} & {*path.parts}]
-    users = {path.relative_to(ROOT).as_posix() for path in sources if "rmtree" in path.read_text()}
-    assert users == {"raycaster/output.py", "fpga/tiny_tapeout.py"}
 
 
 @pytest.mark.parametrize("name", ["...toml", "..toml", "a\x1b[31m.toml", "a\nb.toml", "a\udcff.toml"])
@@ -138,19 +126,7 @@ def test_a_table_aligns_numbers(capsys):
     ]  # fmt: skip
 
 
-def test_every_console_and_table_is_the_projects():
-    """Rich's own console interprets brackets as markup."""
-    forbidden = {"rich.console", "rich.markup", "rich.table", "rich.print"}
-    for path in ROOT.rglob("*.py"):
-        if {".venv", "build", "tests"} & {*path.parts} or path == ROOT / "raycaster" / "output.py":
-            continue
-        imports = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.ImportFrom)]
-        assert not forbidden & {
-            name for node in imports for name in (node.module, f"{node.module}.{node.names[0].name}")
-        }
-
-
-def test_a_full_disk(tmp_path: Path, monkeypatch, refuses):
+def test_a_full_disk(tmp_path: Path, monkeypatch):
     """The directory stays unchanged, and nothing else is left."""
     kept = emptied(tmp_path / "kept")
     (kept / "old").touch()
@@ -159,8 +135,7 @@ def test_a_full_disk(tmp_path: Path, monkeypatch, refuses):
         with replaced(kept):
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    said = refuses(write)
-    assert said == (
+    assert refused(lambda words: write()) == (
         f"error: {kept}: No space left on device; free some space, or choose another place for the output\n"
     )
     assert (kept / "old").exists()
@@ -170,37 +145,21 @@ def test_a_full_disk(tmp_path: Path, monkeypatch, refuses):
 FULL = "No space left on device; free some space, or choose another place for the output"
 
 
-@pytest.mark.parametrize("buffering", [-1, 0])
-@pytest.mark.parametrize("words", [(), ("--help",), ("scenes",), ("completion", "bash")], ids=" ".join)
-def test_standard_output_that_takes_nothing(words: tuple[str, ...], buffering: int, capsys):
-    """Writing fails at once, or when buffered text is flushed."""
+@pytest.mark.parametrize(("words", "unbuffered"), [("scenes", ""), ("scenes", "1"), ("--help", "1")])
+def test_standard_output_that_takes_nothing(words: str, unbuffered: str, tmp_path: Path):
+    """Writing fails at once, or when buffered text is flushed, which Python itself does once more when it ends."""
     reader, writer = os.pipe()
     os.close(reader)
-    for file, code, said in (
-        ("/dev/full", 2, f"error: (standard )?output: {FULL}\n"),
-        (writer, 128 + signal.SIGPIPE, ""),
-    ):
-        with io.TextIOWrapper(open(file, "wb", buffering), write_through=not buffering) as stream:
-            with contextlib.redirect_stdout(stream), pytest.raises(SystemExit) as ended:
-                run_command(lambda: main(words))
-            assert ended.value.code == code
-        assert re.fullmatch(said, capsys.readouterr().err)
-
-
-def test_an_interpreter_ends_without_a_complaint(tmp_path: Path):
-    """Python itself flushes the output once more when it ends."""
-    reader, writer = os.pipe()
-    os.close(reader)
-    buffered = os.environ | {"PYTHONUNBUFFERED": ""}
-    given = {"cwd": tmp_path, "env": buffered, "capture_output": False, "stderr": subprocess.PIPE}
+    environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
+    given = {"cwd": tmp_path, "env": environment, "capture_output": False, "stderr": subprocess.PIPE}
     with open("/dev/full", "w") as full:
-        done = raycaster("scenes", stdout=full, **given)
+        done = raycaster(words, stdout=full, **given)
     assert done.returncode == 2
     assert re.fullmatch(f"error: (standard )?output: {FULL}\n", done.stderr)
-    done = raycaster("scenes", stdout=writer, **given)
+    done = raycaster(words, stdout=writer, **given)
     os.close(writer)
     assert (done.returncode, done.stderr) == (128 + signal.SIGPIPE, "")
-    done = raycaster("scenes", preexec_fn=lambda: os.close(1), **given)
+    done = raycaster(words, preexec_fn=lambda: os.close(1), **given)
     assert (done.returncode, done.stderr) == (0, "")
 
 
@@ -208,22 +167,3 @@ def test_a_terminal_without_the_character(tmp_path: Path):
     done = raycaster("sim", "größe", cwd=tmp_path, env=os.environ | {"PYTHONIOENCODING": "ascii"})
     assert done.returncode == 2
     assert done.stderr.startswith(r"error: gr\xf6\xdfe: no such file")
-
-
-def test_title_of_a_scene_is_text(capsys):
-    Console(width=80).print(Scene.model_fields["title"].annotation(HOSTILE))
-    assert printable(HOSTILE, lines=True) in capsys.readouterr().out
-
-
-@pytest.mark.parametrize("is_terminal", [False, True])
-def test_a_wait_says_how_long_it_usually_is(is_terminal: bool):
-    """A pipe gets one line at the start; a terminal also shows the elapsed time."""
-    file = io.StringIO()
-    console = Console(file=file, force_terminal=is_terminal, width=80)
-    with console.waiting("building [x]", "usually 30 s, once"):
-        begun = file.getvalue()
-    if is_terminal:
-        assert "building [x] (usually 30 s, once)" in file.getvalue()
-        assert "0:00:00" in file.getvalue()
-    else:
-        assert begun == file.getvalue() == "building [x] (usually 30 s, once)\n"

@@ -15,18 +15,15 @@ from pathlib import Path
 import pytest
 from conftest import ROOT, called, installed, make, write_script
 
-from raycaster import waits
 from raycaster.cli import __main__ as program
 from raycaster.cli import completion
-from raycaster.cli.commands import COMMANDS, NOT_OF_MAKE, Command, overview, verify_overview
-from raycaster.engines import ENGINES
+from raycaster.cli.commands import COMMANDS, Command, overview, verify_overview
 from raycaster.errors import UserError
 from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.hierarchy import convert_hierarchy
 from raycaster.hdl.signals import bit
 from raycaster.options import FROM_MAKE, command_line, run_command
 from raycaster.rtl.common.records import Colour
-from raycaster.scene import packaged_scenes
 
 SCREEN_LINES, MOST_LINES, COLUMNS = 24, 40, 80
 VERSION = importlib.metadata.version("raycaster")
@@ -38,12 +35,6 @@ def test_overview_fits_a_screen(text: str):
     assert len(lines) < SCREEN_LINES
     assert max(map(len, lines)) <= COLUMNS
     assert lines[0].startswith(("raycaster ", "make "))
-
-
-def test_overview_has_every_command():
-    for text, left_out in ((overview(), ()), (overview(from_make=True), NOT_OF_MAKE)):
-        words = {word for name in COMMANDS for word in name.split()} - {"verify"}
-        assert words & set(re.split(r"[\s,-]+", text)) == words - set(left_out)
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -144,50 +135,6 @@ def test_the_module_and_the_program_print_the_same(words: list[str], tmp_path: P
 
 
 @pytest.mark.parametrize(
-    ("words", "complaint"),
-    [
-        ("smi", "unknown command: smi (did you mean sim?); raycaster --help lists all"),
-        ("soak", "unknown command: soak (did you mean verify soak?); raycaster --help lists all"),
-        ("verify sok", "unknown command: verify sok (did you mean verify soak?); raycaster --help lists all"),
-        ("xyzzy", "unknown command: xyzzy; raycaster --help lists all"),
-        ("sim --enigne beam", "unknown option: --enigne (did you mean --engine?); see raycaster sim --help"),
-        ("sim --xyzzy", "unknown option: --xyzzy; see raycaster sim --help"),
-        ("sim ENGIN=beam", "ENGIN: raycaster sim does not take it (did you mean ENGINE?); see raycaster sim --help"),
-        ("sim SIMM=icarus", "SIMM: raycaster sim does not take it (did you mean SIM?); see raycaster sim --help"),
-        ("sim mirror_rom", "mirror_rom: no such file or packaged scene (did you mean mirror_room?)"),
-        ("sim boxs.toml", "boxs.toml: cannot be read: No such file or directory (did you mean boxes?)"),
-        ("sim --engine baem", "engine: expected seed, exact or beam, got baem (did you mean beam?)"),
-        ("sim --rectangles 99", "rectangles: expected 32 or less, got 99"),
-        ("quartus", "board: expected de10_lite, de1_soc, de2 or de2_115, got none"),
-        ("registers --rectangles x", "rectangles: expected a whole number, got x"),
-        ("registers --rectangles 33", "rectangles: expected 32 or less, got 33"),
-        ("game --frames 0", "frames: expected at least 1, got 0"),
-        ("web --keep web.json", "keep: there is nothing to keep without --measure"),
-        ("verilog --bus pci", "bus: expected avalon, axi4lite, wishbone or apb, got pci"),
-        ("verilog PREFIX=9x", "prefix: expected the beginning of a Verilog name, such as ray_caster_, got 9x"),
-        (
-            "tinytapeout boxes --rows 240",
-            "rows: a Tiny Tapeout project shows one pixel per clock; choose ROWS=120, 96 or 60, or ENGINE=beam",
-        ),
-        ("tinytapeout boxes --colour-bits 3", "colour_bits: the Pmod has 2 pins per colour, not 3"),
-        ("tinytapeout boxes --bus apb", "bus: the top drives the registers itself, by Avalon-MM; leave out apb"),
-        (
-            "sim pool --engine seed",
-            f"{packaged_scenes()['pool']}: camera.yaw: the seed engine measures depth along x, so its camera cannot "
-            "turn; choose ENGINE=exact or ENGINE=beam",
-        ),
-    ],
-)  # fmt: skip
-def test_a_mistake_gets_one_line(words: str, complaint: str, tmp_path: Path, monkeypatch):
-    """The line suggests what was meant, and nothing is written."""
-    monkeypatch.chdir(tmp_path)
-    with pytest.raises(UserError) as error:
-        program.main(words.split())
-    assert str(error.value) == complaint
-    assert not any(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize(
     ("asked", "meant"),
     [("smi", "sim"), ("sok", "soak"), ("verify-al", "verify-all"), ("lnit", "lint"), ("tst", "test")],
 )
@@ -230,15 +177,6 @@ def test_a_fault_in_a_block_is_one_line(right: str, wrong: str, fault: str, tmp_
     assert capsys.readouterr().err.startswith(f"error: {path}:{fault}")
 
 
-def test_a_long_command_says_how_long_it_usually_takes(capsys):
-    """The estimate goes to stderr, and a model's build time depends on its engine."""
-    assert waits.COMMANDS.keys() < COMMANDS.keys()
-    for command in waits.COMMANDS:
-        waits.announce(command)
-        assert capsys.readouterr() == ("", f"{command}: usually {waits.COMMANDS[command]}, less with kept results\n")
-    assert {waits.building(engine) for engine in ENGINES} == {"usually 8 s, once", "usually 5 s, once"}
-
-
 def test_a_fault_of_another_kind_keeps_its_traceback():
     with pytest.raises(ZeroDivisionError):
         run_command(lambda: 1 // 0)
@@ -253,17 +191,11 @@ def test_a_missing_extra_is_named(monkeypatch):
         program.main(["docs"])
 
 
-@pytest.mark.parametrize(
-    ("from_make", "expected"),
-    [
-        ("", "raycaster verify soak 'my scene.toml' --pixel 3,4 --fraction-bits 4 --stiff --simulator icarus"),
-        ("1", "make soak SCENE='my scene.toml' PIXEL=3,4 FRACTION_BITS=4 STIFF=1 SIM=icarus"),
-    ],
-)
-def test_suggested_commands_have_the_users_form(from_make: str, expected: str, monkeypatch):
-    monkeypatch.setenv(FROM_MAKE, from_make)
-    asked = {"pixel": "3,4", "fraction_bits": "4", "stiff": True, "sim": "icarus"}
-    assert command_line("verify soak", "my scene.toml", asked) == expected
+def test_suggested_commands_have_the_users_form(monkeypatch):
+    """`test_configuration.py` reads suggested options back, in the form of the program too."""
+    monkeypatch.setenv(FROM_MAKE, "1")
+    suggested = command_line("verify soak", "my scene.toml", {"pixel": "3,4", "stiff": True, "sim": "icarus"})
+    assert suggested == "make soak SCENE='my scene.toml' PIXEL=3,4 STIFF=1 SIM=icarus"
 
 
 @pytest.mark.parametrize(("from_make", "form"), [("", "raycaster sim"), ("1", "make sim")])

@@ -18,7 +18,7 @@ from itertools import combinations
 from pathlib import Path
 
 import pytest
-from conftest import called
+from conftest import refused
 from matplotlib.text import Text
 from rich.console import Console
 
@@ -91,10 +91,7 @@ def test_a_command_prints_its_result(tmp_path):
 )
 def test_mistakes_get_one_line(tmp_path, words, complaint):
     main = report.main if words == "report" else points.main
-    done = called(*words.removeprefix("report").split(), cwd=tmp_path, program=main)
-    assert done.returncode == 2
-    assert done.stderr.startswith(complaint)
-    assert done.stderr.count("\n") == 1
+    assert refused(main, *words.removeprefix("report").split(), cwd=tmp_path).startswith(complaint)
 
 
 # Sweeps ---------------------------------------------------------------------------------------------------------------

@@ -20,7 +20,7 @@ from conftest import ROOT
 
 from raycaster.configuration import LOOKS
 from raycaster.scene import Camera, Scene, SceneError, load_scene, packaged_scenes
-from raycaster.verif.seeds import repeat, seed
+from raycaster.verif.seeds import seed
 from raycaster.web.scene_schema import scene_schema
 
 NAME = "scene.toml"
@@ -249,7 +249,7 @@ def test_broken_texts(both):
     """Browser and shell accept the same texts and report errors at the same line, except those named in scene.js."""
     kinds = Counter()
     for text, result, expected in both(list(itertools.islice(_broken(random.Random(seed())), 1000))):
-        note = f"{text}\n{result['error']}\n{expected['error']}\n{repeat()}"
+        note = f"{text}\n{result['error']}\n{expected['error']}"
         assert _is_syntax(result) == _is_syntax(expected), note
         if _agree(result, expected):
             kinds["same line" if _is_syntax(result) else "same"] += 1
@@ -258,9 +258,9 @@ def test_broken_texts(both):
             kinds["other line"] += 1
             assert re.search(r" \((unfinished|control characters|trying to redefine) .*\)$", result["error"]), note
             assert _number_of_line(result) < _number_of_line(expected), note
-    assert kinds["same"] > 200, f"{kinds} {repeat()}"
-    assert kinds["same line"] > 400, f"{kinds} {repeat()}"
-    assert kinds["other line"] < 20, f"{kinds} {repeat()}"
+    assert kinds["same"] > 200, kinds
+    assert kinds["same line"] > 400, kinds
+    assert kinds["other line"] < 20, kinds
 
 
 def _bases(page, angles: list[list[float]]) -> list[list[list[int]]]:
@@ -277,7 +277,7 @@ def test_basis(page):
     angles = [[rng.choice(steps) for _ in range(3)] for _ in range(2000)]
     angles += [[rng.uniform(-360, 360) for _ in range(3)] for _ in range(2000)]
     for three, basis in zip(angles, _bases(page, angles), strict=True):
-        assert basis == _expected_basis(*three), f"{three} {repeat()}"
+        assert basis == _expected_basis(*three), three
 
 
 def test_halves_of_a_basis_are_rounded_to_even(page):

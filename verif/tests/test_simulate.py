@@ -21,11 +21,6 @@ from raycaster.sim import scenes as simulate
 from raycaster.sim.scenes import Outcome, output_directory, run_all, show
 from raycaster.sim.simulator import MODELS_VARIABLE, Model, SimulationError, convert
 
-RESULT_KEYS = {
-    "pixels", "wrong_vs_golden", "wrong_vs_exact", "worst_row_cycles", "frame_cycles", "worst_group_cycles",
-    "underrun", "sim_seconds",
-}  # fmt: skip
-
 # Icarus builds quickly.
 SMALL = configure(screen="tiny", units=8, rectangles=3)
 SMALL_OPTIONS = (SMALL_SCENE, "--screen", "tiny", "--units", 8, "--rectangles", 3, "--simulator", "icarus")
@@ -53,7 +48,6 @@ def test_one_scene_and_two(build, tmp_path, monkeypatch):
         assert Image.open(output / f"{name}.png").size == (128, 96)
     assert (output / "frame.png").read_bytes() == (output / "golden.png").read_bytes()
     result = json.loads((output / "result.json").read_text())
-    assert result.keys() >= RESULT_KEYS
     assert result["wrong_vs_golden"] == 0
     assert [path.name for path in output.parent.iterdir()] == ["small"], "nothing half-written is left"
     assert f"1 scene, 0 of 12,288 pixels wrong; picture: {output / 'frame.png'}\n" in said

@@ -156,20 +156,6 @@ def test_models_share_a_library(tmp_path, own_models, monkeypatch):
     assert [path for path in library if path.endswith("_c.o")] == []
 
 
-def test_a_feature_of_the_library_is_compiled_alone(tmp_path, own_models, monkeypatch):
-    """Objects that do not depend on the feature are reused from the plain library."""
-    calls = []
-    monkeypatch.setattr(simulator, "_call", lambda tool, directory, *command: calls.append((directory, command)))
-    tool = simulator.find_tool("verilator")
-    plain, _ = simulator._runtime(tool, tmp_path, ())
-    (plain / "verilated.o").write_text("compiled once")
-    traced, _ = simulator._runtime(tool, tmp_path, ("--trace",))
-    assert (traced / "verilated.o").read_text() == "compiled once"
-    assert [(place, "--trace" in command) for place, command in calls if "--cc" in command] == [
-        (plain, False), (traced, True)
-    ]  # fmt: skip
-
-
 @pytest.mark.slow
 def test_another_shell_finds_the_model(tmp_path, own_models, monkeypatch):
     """The model is found whatever else is on the shell's PATH."""

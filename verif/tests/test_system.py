@@ -17,10 +17,6 @@ from raycaster.play.system import check_program, play, read_buttons
 from raycaster.rtl.system import picorv32
 from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, build_model, convert
 
-pytestmark = pytest.mark.skipif(
-    picorv32.importlib.util.find_spec(picorv32.PACKAGE) is None, reason="PicoRV32 is not installed"
-)
-
 MIRROR_ROOM = ROOT / "scenes" / "mirror_room.toml"
 FIRST_FRAME = 1
 """First frame that shows the scene."""
@@ -108,7 +104,6 @@ def test_missing_picorv32_is_reported(monkeypatch):
 @pytest.mark.slow
 def test_a_recorded_game(capsys, tmp_path):
     """The command writes pictures drawn by the firmware on the tiny screen."""
-    pytest.importorskip("ziglang", reason="the extra play is not installed")
     assert game.main(["--screen", "tiny", "--frames", "14", "--build", str(BUILD), "--output", str(tmp_path)]) == 0
     said = capsys.readouterr().out
     assert "RayCaster 0." in said and "engine beam" in said

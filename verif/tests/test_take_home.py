@@ -17,7 +17,7 @@ from ipyxact.ipyxact import Component
 from tcl import tcl_calls
 
 from raycaster.buses import BRIDGED
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import OPTIONS, Configuration, configure
 from raycaster.convert.ip_xact import IP_XACT, SPIRIT
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM
 from raycaster.convert.take_home import FILE_LIST, PREFIX, TOP, WAIVERS
@@ -112,10 +112,13 @@ def check_component(config: Configuration, calls: list[list[str]], ports: Ports,
     assert files == 2 * [[name, "VERILOG", "PATH", name] for name in sources]
     hertz = config.screen_geometry.clock_hz
     assert ["set_interface_property", "clock", "clockRate", str(hertz)] in calls
-    macros = {call[1].rpartition(".")[2]: call[2] for call in calls if call[0] == "set_module_assignment"}
-    assert (macros["RECTANGLES"], macros["CULLING"]) == (str(config.rectangles), str(int(config.culling)))
-    assert macros["ROUNDING"] == f'"{config.rounding}"'
-    assert macros.get("FIXED") == (f'"{config.fixed.scope}"' if config.fixed else None)
+    options = {name: getattr(config, name) for name in OPTIONS} | (
+        {"fixed": config.fixed.scope} if config.fixed else {}
+    )
+    assert [call[1:] for call in calls if call[0] == "set_module_assignment"] == [
+        [f"embeddedsw.CMacro.{name.upper()}", f'"{value}"' if isinstance(value, str) else str(int(value))]
+        for name, value in options.items()
+    ]
 
 
 def check_ip_xact(path: Path, ports: Ports, sources: list[str]) -> None:
@@ -191,11 +194,6 @@ def test_every_waiver_is_needed(tmp_path):
         (directory / f"{TOP}.vlt").write_text("`verilator_config\n")
         said = verilator_says(directory)
         patterns = {pattern for pattern in patterns if not fnmatch.filter(said, pattern)}
-
-
-def test_a_waiver_has_its_reason():
-    for paragraph in WAIVERS.read_text().split("\n\n")[1:]:
-        assert re.match(r"(// .+\n)+lint_off", paragraph)
 
 
 def fusesoc(folder: Path, *target: str) -> subprocess.CompletedProcess[str]:

@@ -14,8 +14,8 @@ from conftest import BUILD, broken, called
 from rich.console import Console
 
 from raycaster.debug.probes.engines import description_of
-from raycaster.debug.probes.ray import Place, Ray, Reading, first_difference, module_of, read
-from raycaster.debug.recorder import pixel_place, record
+from raycaster.debug.probes.ray import Place, Ray, Reading, first_difference, read
+from raycaster.debug.recorder import record
 from raycaster.debug.trace import difference_line, main, show
 from raycaster.debug.wave import write_view
 from raycaster.debug.waves import Waves
@@ -240,11 +240,3 @@ def test_the_command(tmp_path):
     broken = called(str(SCENE), *options, cwd=tmp_path, program=main)
     assert broken.returncode == 1, broken.stdout + broken.stderr
     assert "module z_buffer" in broken.stdout
-
-
-def test_names():
-    """A signal's name gives its module, and a pixel's text gives its place."""
-    assert module_of("bench.dut.ray_caster_renderer_i.ray_caster_i.ray_unit_12_i.z_buffer_i.found") == "z_buffer"
-    assert module_of("bench.dut.ray_caster_renderer_i.line_buffer_3_i.write") == "line_buffer"
-    assert module_of("bench.dut.irq") == "ray_caster_module"
-    assert pixel_place("3, 4") == (3, 4)

@@ -14,7 +14,7 @@ from raycaster.debug.probes.ray import fields
 from raycaster.debug.trace import main as trace
 from raycaster.debug.wave import viewer
 from raycaster.debug.wave_files import View, write_files
-from raycaster.debug.waves import Waves, signed
+from raycaster.debug.waves import Waves
 from raycaster.errors import UserError
 from raycaster.rtl.common.records import Signs
 from raycaster.sim.simulator import FST_HEADERS, has_headers
@@ -121,10 +121,6 @@ def test_wrong_names_and_files_get_one_line(vcd, tmp_path):
         Waves(tmp_path / "text.fst")
     with pytest.raises(UserError, match="has no signal clock"):
         Waves(vcd.path, clock="clock").edges()
-
-
-def test_twos_complement():
-    assert [signed(value, 3) for value in (0, 3, 4, 7, None)] == [0, 3, -4, -1, None]
 
 
 def test_the_viewer_that_is_there_is_opened(tmp_path, monkeypatch):

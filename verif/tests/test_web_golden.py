@@ -19,11 +19,11 @@ from raycaster.golden.picture import shown
 from raycaster.golden.rays import primary_slopes
 from raycaster.program import scene_words
 from raycaster.registers import register_map
-from raycaster.scene import load_scene
+from raycaster.scene import load_scene, packaged_scenes
 from raycaster.screens import SCREENS, Screen
 from raycaster.sim.register_model import COMMIT_CLOCKS, LiveScene, SceneFollower
 from raycaster.verif.random_scenes import random_scene
-from raycaster.verif.seeds import repeat, seed
+from raycaster.verif.seeds import seed
 from raycaster.web.golden import Golden
 from raycaster.web.wasm import golden_wasm
 
@@ -140,25 +140,24 @@ def test_random_worlds(golden, options):
         looks = {name: has and rng.random() < 0.7 for name, has in options.items() if name in LOOKS}
         rectangles, colour_bits = int(rng.integers(1, 33)), int(rng.integers(1, 9))
         config = design(rectangles=rectangles, colour_bits=colour_bits, **{**options, **looks})
-        drawn = assert_drawn(golden, config, random_words(rng, config), f"world {number}; {repeat()}")
+        drawn = assert_drawn(golden, config, random_words(rng, config), f"world {number}")
         colourful += len(np.unique(drawn.reshape(-1, 3), axis=0)) > 2
-    assert colourful > WORLDS / 6, repeat()
+    assert colourful > WORLDS / 6
 
 
 @pytest.mark.parametrize("rows", [240, 200, 180])
-def test_every_screen(golden, rows):
+def test_every_screen(golden, rows, random):
     """Every screen is drawn at its finest scale."""
-    rng = np.random.default_rng(seed())
     config = configure(engine="beam", rows=rows, turn=True, materials=True, patterns=True, reflections=2)
     if rows == 180:
         config = replace(config, scale=2)
-    assert_drawn(golden, config, random_words(rng, config), repeat())
+    assert_drawn(golden, config, random_words(random, config), f"{rows} rows")
 
 
-def test_does_not_run(golden, scenes):
+def test_does_not_run(golden):
     """The picture is black, and a pixel's ray has no bounces."""
     config = design(engine="exact")
-    words = dict(scene_words(load_scene(scenes / "floor.toml"), config))
+    words = dict(scene_words(load_scene(packaged_scenes()["floor"]), config))
     control = register_map(config.rectangles)["control"]
     for mask, runs in ((0, True), (control.fields["run"].mask, False)):
         words[control.address] &= ~mask
@@ -213,9 +212,9 @@ def test_explains_a_pixel(golden, options):
         for (row, column), expected in zip(pixels.tolist(), true_bounces(config, scene, slopes), strict=True):
             bounces = [dict(zip(NAMES, one, strict=True)) for one in golden.bounces(column, row).tolist()]
             known = [{name: bounce[name] for name in one} for bounce, one in zip(bounces, expected, strict=True)]
-            assert known == expected, f"world {number}, row {row}, column {column}; {repeat()}"
+            assert known == expected, f"world {number}, row {row}, column {column}"
             hits = [one["shadow"] for one in expected if one["winner"] >= 0]
             lengths |= {len(hits), len(expected)}
             shadows |= set(hits)
-    assert lengths == {0, 1, 2, 3}, repeat()
-    assert not config.light or {LIT, DARK_SIDE} < shadows, repeat()
+    assert lengths == {0, 1, 2, 3}
+    assert not config.light or {LIT, DARK_SIDE} < shadows

@@ -14,8 +14,8 @@ from raycaster.debug.probes.exact import lighting
 from raycaster.debug.probes.ray import Place, Ray
 from raycaster.design import Design
 from raycaster.engines import SEED
-from raycaster.scene import load_scene
-from raycaster.verif.seeds import repeat, seed
+from raycaster.scene import load_scene, packaged_scenes
+from raycaster.verif.seeds import seed
 from raycaster.web.taps import tapped_probes
 
 MODELS = {"exact": "exact", "seed": "seed-0"}
@@ -105,24 +105,24 @@ def assert_account(life: dict, ray: Ray, context: str) -> set[str]:
 
 @pytest.mark.slow_sets("seed")
 @pytest.mark.parametrize("engine", DESIGNS)
-def test_a_life_matches_golden(engine, scenes, page, site):
+def test_a_life_matches_golden(engine, page, site):
     config = DESIGNS[engine]
     page.goto((site / "index.html").as_uri())
     compared, lengths, shadows = set(), set(), set()
     for number, name in enumerate(SCENES[engine]):
-        path, pixels = scenes / f"{name}.toml", random_pixels(number, PIXELS)
+        path, pixels = packaged_scenes()[name], random_pixels(number, PIXELS)
         found = page.evaluate(WATCH, [MODELS[engine], path.read_text(), pixels])
         for (column, row), pixel in zip(pixels, found, strict=True):
-            context = f"{name}, column {column}, row {row}; {repeat()}"
+            context = f"{name}, column {column}, row {row}"
             ray = ray_of(path, config, column, row, 2)
             assert pixel["monitor"] == ray.pixel, context
             compared |= assert_account(pixel["life"], ray, context)
             hit = [bounce for bounce in range(3) if ray.winner(bounce) >= 0]
             lengths.add(len(hit))
             shadows |= {shadow_of(ray, bounce) for bounce in hit if ray.scene.light}
-    assert compared == {probe.quantity for probe in tapped_probes(config, 0) if not probe.decode}, repeat()
-    assert len(lengths) > 1 and 3 in lengths, repeat()
-    assert not config.light or {-1, -2} < shadows, repeat()
+    assert compared == {probe.quantity for probe in tapped_probes(config, 0) if not probe.decode}
+    assert len(lengths) > 1 and 3 in lengths
+    assert not config.light or {-1, -2} < shadows
 
 
 def opened(page, site: Path, question: str = "") -> None:
@@ -146,7 +146,7 @@ def ask(page, **values: object) -> dict:
 
 
 @pytest.mark.parametrize(("engine", "name"), [("exact", "shadow_hall"), ("exact", "staircase"), ("seed", "stage")])
-def test_the_tab(page, site, scenes, engine, name):
+def test_the_tab(page, site, engine, name):
     """The tab shows each ray and its shadow ray, and marks only the pixel that this test plants."""
     opened(page, site, "?plant=9,7")
     [(column, row)] = random_pixels(20, 1)
@@ -154,8 +154,8 @@ def test_the_tab(page, site, scenes, engine, name):
     if engine != "exact":
         ask(page, engine=engine)
     state = ask(page, column=column, row=row)
-    context = f"column {column}, row {row}; {repeat()}"
-    ray = ray_of(scenes / f"{name}.toml", DESIGNS[engine], column, row)
+    context = f"column {column}, row {row}"
+    ray = ray_of(packaged_scenes()[name], DESIGNS[engine], column, row)
     winners = [ray.winner(bounce) for bounce in range(ray.reflections + 1) if ray.alive(bounce)]
     assert (state["column"], state["row"], state["wrong"]) == (column, row, False), context
     assert [bounce["winner"] for bounce in state["life"]["bounces"]] == winners, context
@@ -196,13 +196,13 @@ def test_the_tab_refuses_bad_choices(page, site):
     assert refusal.is_hidden()
 
 
-def test_the_tab_shows_shadows(page, site, scenes):
+def test_the_tab_shows_shadows(page, site):
     """The page says what a pixel's light meets, on the hardware and in the golden model."""
     opened(page, site)
     ask(page, scene="shadow_hall")
     missing = {"lit", "on the dark side", "shaded by"}
     for column, row in random_pixels(30, 40):
-        ray = ray_of(scenes / "shadow_hall.toml", DESIGNS["exact"], column, row)
+        ray = ray_of(packaged_scenes()["shadow_hall"], DESIGNS["exact"], column, row)
         golden = [lighting(ray, Place(bounce))[0] for bounce in range(3) if ray.winner(bounce) >= 0]
         kinds = {kind for kind in missing for text in golden if text.startswith(kind)}
         if kinds:
@@ -211,4 +211,4 @@ def test_the_tab_shows_shadows(page, site, scenes):
             tables = page.locator("#pixel-life .scroll", has_text="Shadow ray, from")
             cells = tables.locator("td:nth-child(2)").all_text_contents()
             assert cells == [text for text in golden for _ in ("hardware", "golden model")], f"{column}, {row}"
-    assert not missing, repeat()
+    assert not missing

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pygame
 import pytest
 from conftest import BUILD, ROOT
 from PIL import Image
@@ -21,7 +22,6 @@ from raycaster.play.walk import Walker
 from raycaster.scene import UNTURNED, Camera, load_scene
 
 MIRROR_ROOM = ROOT / "scenes" / "mirror_room.toml"
-pygame = pytest.importorskip("pygame", reason="the extra play is not installed")
 
 
 @pytest.fixture
@@ -32,7 +32,6 @@ def unseen(monkeypatch):
 
 @pytest.mark.slow
 def test_the_game_is_played(unseen, tmp_path, capsys):
-    pytest.importorskip("ziglang", reason="the extra play is not installed")
     shot = tmp_path / "shot.png"
     window.main(["--screen", "tiny", "--frames", "12", "--screenshot", str(shot), "--build", str(BUILD)])
     said = capsys.readouterr().out
