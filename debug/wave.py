@@ -55,7 +55,7 @@ def write_view(path: Path, design: Design, ray: Ray) -> list[Path]:
     samples = waves.sample(description.controls())
     events = description.events(samples, ray)
     cycles = [event.cycle for event in events if event.kind != "shown"] or [0, len(samples.times_ns) - 1]
-    begin, end = (samples.times_ns[max(0, cycle - 1)] for cycle in (cycles[0], max(cycles)))
+    begin, end = map(samples.begin_ns, (cycles[0], max(cycles)))
     view = View(description.groups(ray), design_states(design.configuration), begin, end)
     return write_files(waves, view)
 

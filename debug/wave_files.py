@@ -11,7 +11,7 @@ from pathlib import Path
 
 from vcd.gtkw import GTKWFlag, GTKWSave, make_translation_filter
 
-from raycaster.debug.probes.ray import module_of
+from raycaster.debug.probes import module_of
 from raycaster.debug.waves import RANGE, Waves
 from raycaster.errors import UserError
 

@@ -14,7 +14,7 @@ import difflib
 import math
 import re
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -43,6 +43,10 @@ class Samples:
     values: dict[str, list[int | None]]
     """One value per edge, by signal: the value just before the edge, which registers capture. Unsigned; None if any bit
     is unknown, floating or not yet recorded."""
+
+    def begin_ns(self, cycle: int) -> float:
+        """Return the start of the cycle that a sample ends, where a viewer shows the cycle's values."""
+        return self.times_ns[max(0, cycle - 1)]
 
 
 class Waves:
@@ -179,7 +183,11 @@ class Waves:
             UserError: there is no such clock or signal.
         """
         edges = self._edge_ticks(start_ns, end_ns)
-        values = {name: _before(edges, *self._history(name)) for name in names}
+        values = {}
+        for name in names:
+            times, after = self._history(name)
+            places = [bisect_left(times, edge) for edge in edges]
+            values[name] = [after[place - 1] if place else None for place in places]
         return Samples([edge * self._tick_ns for edge in edges], values)
 
     def _edge_ticks(self, start_ns: float, end_ns: float) -> list[int]:
@@ -215,16 +223,6 @@ def _bits_of(value: int | str | float | None, high: int, low: int) -> int | None
         text = value[len(value) - 1 - high : len(value) - low]
         return int(text, 2) if text and set(text) <= {"0", "1"} else None
     return value >> low & (1 << high - low + 1) - 1 if isinstance(value, int) else None
-
-
-def _before(edges: Sequence[int], times: Sequence[int], values: Sequence[int | None]) -> list[int | None]:
-    """Return the value just before each edge."""
-    sampled, place = [], 0
-    for edge in edges:
-        while place < len(times) and times[place] < edge:
-            place += 1
-        sampled.append(values[place - 1] if place else None)
-    return sampled
 
 
 def signed(value: int | None, bits: int) -> int | None:

@@ -8,8 +8,9 @@ machine runs; `machine.cpp` records the taps in every clock of a group, with `TA
 from __future__ import annotations
 
 from raycaster.configuration import Configuration
+from raycaster.debug.probes import DUT
 from raycaster.debug.probes.engines import description_of
-from raycaster.debug.probes.ray import DUT, Probe
+from raycaster.debug.probes.ray import Probe
 from raycaster.play.machine import TOP
 
 TAP_BITS = 32

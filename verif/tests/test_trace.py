@@ -13,8 +13,9 @@ import pytest
 from conftest import BUILD, broken, called
 from rich.console import Console
 
+from raycaster.debug.probes import module_of
 from raycaster.debug.probes.engines import description_of
-from raycaster.debug.probes.ray import Place, Ray, Reading, first_difference, module_of, read
+from raycaster.debug.probes.ray import Place, Ray, Reading, first_difference, read
 from raycaster.debug.recorder import pixel_place, record
 from raycaster.debug.trace import difference_line, main, show
 from raycaster.debug.wave import write_view
