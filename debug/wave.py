@@ -40,16 +40,7 @@ def rows_of(text: str | None, row: int) -> tuple[int, int]:
 
 
 def write_view(path: Path, design: Design, ray: Ray) -> list[Path]:
-    """Write viewers' files with the cursor at a pixel's ray.
-
-    Args:
-        path: a waveform that contains the pixel's row.
-        design: the recorded design.
-        ray: the pixel's ray.
-
-    Returns:
-        The files for GTKWave and Surfer, next to the waveform.
-    """
+    """Write files for GTKWave and Surfer next to a waveform of a pixel's row, with the cursor at the pixel's ray."""
     waves = Waves(path)
     description = description_of(design.configuration, ray.unit)
     samples = waves.sample(description.controls())

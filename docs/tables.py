@@ -75,9 +75,7 @@ def _checks(*kept: Outcome) -> str:
     rows = []
     for check in CHECKS:
         of_it = [by_name[name] for name in check.kept]
-        commands, dates = (
-            "<br>".join(texts) for texts in zip(*((f"`{one.asked()}`", one.when) for one in of_it), strict=True)
-        )
+        commands, dates = "<br>".join(f"`{one.asked()}`" for one in of_it), "<br>".join(one.when for one in of_it)
         rows.append([check.title, check.engine, check.body(*of_it), commands, dates])
     return table(["check", "engine", "result", "command", "measured"], rows)
 
@@ -159,8 +157,7 @@ def _current(commands: Sequence[str]) -> Mapping[str, Digests | str]:
             made = (each.digests(known) if isinstance(each, Provenance) else each for each in described)
             found |= zip(wanted, made, strict=True)
             partly = store.with_suffix(".partial")
-            kept = {"state": state, "found": found, "hardware": hardware, "designs": known}
-            partly.write_text(json.dumps(kept))
+            partly.write_text(json.dumps({"state": state, "found": found, "hardware": hardware, "designs": known}))
             partly.replace(store)
     return found
 
@@ -193,8 +190,5 @@ def _changed(then: Digests, now: Digests | str) -> Sequence[str]:
     """Name everything whose digest has changed, appeared or disappeared."""
     if isinstance(now, str):
         return [f"the command, which is refused: {now}"]
-    found = []
-    for kind, digests in now.items():
-        before = then.get(kind, {})
-        found += sorted(name for name in digests.keys() | before.keys() if digests.get(name) != before.get(name))
-    return found
+    pairs = [(then.get(kind, {}), digests) for kind, digests in now.items()]
+    return [name for old, new in pairs for name in sorted(old.keys() | new) if old.get(name) != new.get(name)]

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.debug.probes import AXES, COLOURS, DUT, fields, numbered
-from raycaster.debug.probes.exact import fraction, hit
+from raycaster.debug.probes.exact import fraction
 from raycaster.debug.probes.ray import Description, Event, Place, Probe, Ray, Read, Value, channels_of
 from raycaster.debug.probes.units import RECT_FIELDS, monitor_probes, scene_probes, shown_events
 from raycaster.debug.waves import Samples, signed
@@ -68,11 +68,6 @@ def way_p(ray: Ray, place: Place) -> Sequence[Value]:
     return products(ray, place.index, ray.of_ray(0, "slopes"))[:1]
 
 
-def walked(ray: Ray, place: Place) -> Sequence[Value]:
-    """The column's ways to the bounds."""
-    return products(ray, place.index, ray.of_ray(0, "slopes"))[2]
-
-
 def mirrored(ray: Ray, place: Place) -> Sequence[Value] | None:
     """Offset that mirrors add to a point, by axis: from the camera to its image."""
     eyes = zip(ray.of_ray(place.bounce, "origins"), ray.scene.camera.position, strict=True)
@@ -83,11 +78,6 @@ def turned(ray: Ray, place: Place) -> Sequence[Value] | None:
     """Flags of the axes along which the folded ray runs backwards; None for an axis along which it does not move."""
     slopes = zip(ray.of_ray(place.bounce, "slopes"), ray.of_ray(0, "slopes"), strict=True)
     return [int(slope != before) if before else None for slope, before in slopes] if place.bounce else None
-
-
-def last_mirror(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """Axis and plane distance of the mirror that the ray left last."""
-    return met(ray, Place(place.bounce - 1)) if place.bounce else None
 
 
 def met(ray: Ray, place: Place) -> Sequence[Value] | None:
@@ -244,7 +234,8 @@ class BeamProbes(Description):
                 signed=True, parts=AXES),
             Probe("runs back", fields("{fold}", "fold", [f"back_{axis}" for axis in AXES], fold), "ray", turned,
                 parts=AXES),
-            Probe("last mirror", fields("{fold}", "fold", ("axis", "distance"), fold), "ray", last_mirror, signed=(1,),
+            Probe("last mirror", fields("{fold}", "fold", ("axis", "distance"), fold), "ray",
+                lambda ray, place: met(ray, Place(place.bounce - 1)) if place.bounce else None, signed=(1,),
                 shown=False),
         ]  # fmt: skip
         kept = [
@@ -270,9 +261,10 @@ class BeamProbes(Description):
                 lambda ray, place: None if place.bounce else way_p(ray, place), late=1, signed=True),
             Probe("way p", ("{walker}.way_p",), "test",
                 lambda ray, place: way_p(ray, place) if place.bounce else None, signed=True),
-            Probe("bounds p, q", tuple(f"{{walker}}.{name}" for name in BOUNDS), "test", walked, late=1,
-                signed=True),
-            Probe("inside", fields("{tester}", "hit", ("valid",), candidate), "test", hit, late=beam.TESTER_LATENCY),
+            Probe("bounds p, q", tuple(f"{{walker}}.{name}" for name in BOUNDS), "test",
+                lambda ray, place: products(ray, place.index, ray.of_ray(0, "slopes"))[2], late=1, signed=True),
+            Probe("inside", fields("{tester}", "hit", ("valid",), candidate), "test", Ray.hit,
+                late=beam.TESTER_LATENCY),
             Probe("t", fields("{tester}", "hit", ("numerator", "denominator"), candidate), "test", fraction,
                 late=beam.TESTER_LATENCY),
             *rounds,

@@ -25,11 +25,6 @@ def mirror(ray: Ray, place: Place) -> Sequence[Value]:
     return 1, axis, ray.of_rectangle(left, "numerators")
 
 
-def hit(ray: Ray, place: Place) -> Sequence[Value]:
-    """1 if the rectangle is hit, else 0."""
-    return (int(ray.of_rectangle(place, "hits")),)
-
-
 def surface(ray: Ray, rectangle: int) -> Sequence[Value] | None:
     """A rectangle's axis, plane and colour; None for -1."""
     return (*ray.plane(Place(0, rectangle))[:2], ray.colour(rectangle)) if rectangle >= 0 else None
@@ -89,14 +84,13 @@ class ExactProbes(UnitProbes):
         nearest_t = tuple(f"{keeper}.found_{name}" for name in ("distance", "slope"))
         return [
             *self.first_probes(),
-            Probe("eye", fields(memory, "eye", AXES), "ray", lambda ray, place: ray.of_ray(place.bounce, "origins"),
-                late=1, signed=True, parts=AXES),
+            Probe("eye", fields(memory, "eye", AXES), "ray", Ray.origin, late=1, signed=True, parts=AXES),
             Probe("signs", fields(memory, "signs", SIGNS, Signs()), "ray", Ray.slope_signs, late=1, parts=AXES),
             Probe("mirror", fields(memory, "mirror", ("active", "axis", "distance"), mirror_of(self.config)), "ray",
                 mirror, late=1, shown=False),
             Probe("offered", fields(self.control, "offered", SURFACE, surface_of(self.config)), "write",
                 lambda ray, place: surface(ray, place.index), colour=(2,), shown=False),
-            Probe("inside", (f"{tester}.hit",), "write", hit),
+            Probe("inside", (f"{tester}.hit",), "write", Ray.hit),
             Probe("t", t, "write", fraction),
             Probe("nearest t", nearest_t, "write",
                 lambda ray, place: fraction(ray, Place(place.bounce, ray.nearest(place))), late=1),

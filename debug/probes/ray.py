@@ -294,6 +294,14 @@ class Ray:
         u, v = OTHER_AXES[axis]
         return axis, int(low[axis]), tuple(int(value) for value in (low[u], high[u], low[v], high[v]))
 
+    def hit(self, place: Place) -> Sequence[Value]:
+        """Return 1 if the rectangle is hit, else 0."""
+        return (int(self.of_rectangle(place, "hits")),)
+
+    def origin(self, place: Place) -> Sequence[Value]:
+        """Return the start of a ray."""
+        return self.of_ray(place.bounce, "origins")
+
     def sorted_rect(self, place: Place) -> Sequence[Value]:
         """Return a rectangle's fields as the hardware sorts them."""
         axis, position, bounds = self.plane(place)

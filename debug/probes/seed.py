@@ -63,11 +63,6 @@ def of_reflected(read: Read) -> Read:
     return lambda ray, place: read(ray, place) if place.bounce else None
 
 
-def origin(ray: Ray, place: Place) -> Sequence[Value]:
-    """Start of the ray."""
-    return ray.of_ray(place.bounce, "origins")
-
-
 def products(ray: Ray, place: Place) -> Sequence[Value]:
     """Dividends for u and v: magnitudes of the slope times n."""
     slopes, n = ray.of_ray(place.bounce, "slopes"), ray.of_rectangle(place, "numerators")
@@ -130,11 +125,11 @@ class SeedProbes(UnitProbes):
         kept = (f"{buffer}.found_axis", f"{buffer}.found_colour")
         return [
             *self.first_probes(),
-            Probe("reflected origin", fields(memory, "reflected", AXES, ray), "ray", of_reflected(origin), late=1,
+            Probe("reflected origin", fields(memory, "reflected", AXES, ray), "ray", of_reflected(Ray.origin), late=1,
                 scale=True, shown=False, parts=AXES),
             Probe("reflected signs", fields(memory, "reflected", SIGNS, ray), "ray",
                 of_reflected(Ray.slope_signs), late=1, shown=False, parts=AXES),
-            Probe("origin", fields(self.unit, "ray", AXES, ray), "ray", origin, late=1, scale=True,
+            Probe("origin", fields(self.unit, "ray", AXES, ray), "ray", Ray.origin, late=1, scale=True,
                 true=lambda ray, place: ray.true_origin(place.bounce), parts=AXES),
             Probe("signs", fields(self.unit, "ray", SIGNS, ray), "ray", Ray.slope_signs, late=1, parts=AXES),
             Probe("towards the plane", of_helpers("towards"), "find", towards, late=1, shown=False),
@@ -147,8 +142,7 @@ class SeedProbes(UnitProbes):
                 shown=False),
             Probe("hit point u, v", of_helpers("value"), "write", coordinates, signed=True, true=true_coordinates,
                 scale=True),
-            Probe("inside", (f"{finder}.hit",), "write", lambda ray, place: (int(ray.of_rectangle(place, "hits")),),
-                true=true_inside),
+            Probe("inside", (f"{finder}.hit",), "write", Ray.hit, true=true_inside),
             Probe("depth", (f"{finder}.depth",), "write", of_rectangle("depths", "hits"), true=true_depth, scale=True),
             Probe("point", fields(finder, "point", AXES, point), "write", of_rectangle("points", "hits"), scale=True,
                 shown=False, parts=AXES),
