@@ -98,18 +98,24 @@ def record(model: Model, design: Design, rows: tuple[int, int], target: Path) ->
 
 
 def build_and_record(
-    design: Design, simulator: str, rows: tuple[int, int], target: Path, *, build: Path, console: Console
-) -> Path:
-    """Record some rows like `record`, after building the model below `build` if there is none, and show the progress.
+    arguments: argparse.Namespace, design: Design, rows: tuple[int, int], target: Path, console: Console
+) -> Path | None:
+    """Record some rows like `record`, after building the model if there is none, and show the user the progress.
+
+    Returns:
+        The waveform's path; None if the model or the simulation failed, after showing the reason.
 
     Raises:
         UserError: there are no such rows, or the simulator is missing.
-        SimulationError: the model could not be built, or the simulation failed.
     """
     check_replaceable(target)
-    find_tool(simulator)
-    config = design.configuration
-    with console.waiting(f"building {config.name} with {simulator}", building(config.engine)):
-        model = build_model(config, simulator, build=build, bench=WINDOW_BENCH)
-    with console.waiting("simulating"):
-        return record(model, design, rows, target)
+    find_tool(arguments.simulator)
+    config, simulator = design.configuration, arguments.simulator
+    try:
+        with console.waiting(f"building {config.name} with {simulator}", building(config.engine)):
+            model = build_model(config, simulator, build=arguments.build, bench=WINDOW_BENCH)
+        with console.waiting("simulating"):
+            return record(model, design, rows, target)
+    except SimulationError as error:
+        console.print(str(error), style="red", soft_wrap=True)
+        return None

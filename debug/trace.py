@@ -17,7 +17,6 @@ from raycaster.design import design_for
 from raycaster.errors import UserError
 from raycaster.options import CommandParser, given_options
 from raycaster.output import Console, Table, printable
-from raycaster.sim.simulator import SimulationError
 
 PIXEL_EVENTS = ("done", "shown")
 WRONG = "bold red"
@@ -190,11 +189,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     design = design_for(arguments.scene, given_options(arguments))
     ray = Ray(design, row, column)
     target = arguments.build / "trace" / design.name
-    try:
-        rows = row, row
-        waves = build_and_record(design, arguments.simulator, rows, target, build=arguments.build, console=console)
-    except SimulationError as error:
-        console.print(str(error), style="red", soft_wrap=True)
+    waves = build_and_record(arguments, design, (row, row), target, console)
+    if waves is None:
         return 1
     readings = read(Waves(waves), description_of(design.configuration, ray.unit), ray)
     show(ray, readings, console)

@@ -20,7 +20,6 @@ from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.options import CommandParser, given_options
 from raycaster.output import Console
-from raycaster.sim.simulator import SimulationError
 
 MEGABYTE = 1_000_000
 
@@ -86,10 +85,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         raise UserError(f"span: rows {rows[0]} to {rows[1]} do not include the pixel's row {row}")
     console = Console(soft_wrap=True)
     target = arguments.build / "wave" / design.name
-    try:
-        waves = build_and_record(design, arguments.simulator, rows, target, build=arguments.build, console=console)
-    except SimulationError as error:
-        console.print(str(error), style="red")
+    waves = build_and_record(arguments, design, rows, target, console)
+    if waves is None:
         return 1
     files = write_view(waves, design, ray)
     size = waves.stat().st_size / MEGABYTE

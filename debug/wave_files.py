@@ -39,17 +39,19 @@ SURFER_DIGITS = "abcdefghijklmnop"
 
 @dataclass(frozen=True)
 class View:
-    """Contents of a viewer's window."""
+    """Contents of a viewer's window.
+
+    Attributes:
+        groups: signals by group; see `raycaster.debug.probes.ray.Description`.
+        states: names of an enumerated signal's values, by module and signal.
+        cursor_ns: time of the cursor, where the visible time begins.
+        end_ns: end of the time that is visible at first.
+    """
 
     groups: Mapping[str, Sequence[str]]
-    """Signals by group; see `raycaster.debug.probes.ray.Description`."""
-
     states: Mapping[tuple[str, str], Mapping[int, str]]
-    """Names of an enumerated signal's values, by module and signal."""
-
     cursor_ns: float
     end_ns: float
-    """End of the time that is visible at first."""
 
 
 def write_files(waves: Waves, view: View) -> list[Path]:

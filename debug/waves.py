@@ -55,6 +55,8 @@ class Waves:
     A name is the path of instances from the bench down, with dots: `bench.dut.ray_caster_renderer_i.row`. An element of
     a memory has its number after the memory's name, in brackets. Methods that return values or widths also accept a
     range of a signal's bits: `bench.dut.rect_mem_i.rects_rect_word[24:23]`, or `[23:23]` for one bit.
+
+    Each method raises a UserError if there is no such signal or clock, or if the signal lacks these bits.
     """
 
     def __init__(self, path: Path, clock: str = CLOCK):
@@ -117,20 +119,12 @@ class Waves:
         return round(time_ns / self._tick_ns)
 
     def width(self, name: str) -> int:
-        """Number of bits of a signal.
-
-        Raises:
-            UserError: there is no such signal, or it lacks these bits.
-        """
+        """Number of bits of a signal."""
         _, high, low = self.bits(name)
         return high - low + 1
 
     def bits(self, name: str) -> tuple[str, int, int]:
-        """Split a name into the signal, and the highest and the lowest bit of the range.
-
-        Raises:
-            UserError: there is no such signal, or it lacks these bits.
-        """
+        """Split a name into the signal, and the highest and the lowest bit of the range."""
         found = RANGE.fullmatch(name)
         signal = found[1] if found else name
         width = self._variable(signal).bitwidth
@@ -143,7 +137,7 @@ class Waves:
         """Return the times of the clock's first and last changes, in ns.
 
         Raises:
-            UserError: there is no such clock, or it never changes.
+            UserError: the clock never changes.
         """
         times, _ = self._history(self._clock)
         if not times:
@@ -151,37 +145,21 @@ class Waves:
         return times[0] * self._tick_ns, times[-1] * self._tick_ns
 
     def value(self, name: str, time_ns: float) -> int | None:
-        """Return a signal's value at a time, including changes at that very time; see `Samples.values`.
-
-        Raises:
-            UserError: there is no such signal.
-        """
+        """Return a signal's value at a time, including changes at that very time; see `Samples.values`."""
         times, values = self._history(name)
         place = bisect_right(times, self.ticks(time_ns))
         return values[place - 1] if place else None
 
     def changes(self, name: str) -> list[tuple[float, int | None]]:
-        """List a signal's changes: the time in ns and the new value, beginning with the initial value.
-
-        Raises:
-            UserError: there is no such signal.
-        """
+        """List a signal's changes: the time in ns and the new value, beginning with the initial value."""
         return [(time * self._tick_ns, value) for time, value in zip(*self._history(name), strict=True)]
 
     def edges(self, start_ns: float = 0, end_ns: float = math.inf) -> list[float]:
-        """List the clock's rising edges from start_ns on and before end_ns.
-
-        Raises:
-            UserError: there is no such clock.
-        """
+        """List the clock's rising edges from start_ns on and before end_ns."""
         return [time * self._tick_ns for time in self._edge_ticks(start_ns, end_ns)]
 
     def sample(self, names: Iterable[str], start_ns: float = 0, end_ns: float = math.inf) -> Samples:
-        """Sample signals at each rising edge from start_ns on and before end_ns.
-
-        Raises:
-            UserError: there is no such clock or signal.
-        """
+        """Sample signals at each rising edge from start_ns on and before end_ns."""
         edges = self._edge_ticks(start_ns, end_ns)
         values = {}
         for name in names:

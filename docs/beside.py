@@ -50,32 +50,29 @@ FRAME = 800 * 525
 
 @dataclass(frozen=True)
 class Other:
-    """Design of another project."""
+    """Design of another project.
+
+    Attributes:
+        title: its name.
+        address: URL of its repository.
+        top: top module, which is measured.
+        sources: Verilog files within a checkout, in order.
+        defines: macros for the C++ program that clocks the design.
+        draws: short description of the picture.
+        data: patterns of files within a checkout that the design reads at start.
+        ours: Verilog that replaces cells specific to another chip.
+        clock_mhz: clock that its screen mode needs.
+    """
 
     title: str
     address: str
-    """URL of its repository."""
-
     top: str
-    """Top module, which is measured."""
-
     sources: tuple[str, ...]
-    """Verilog files within a checkout, in order."""
-
     defines: Mapping[str, str]
-    """Macros for the C++ program that clocks the design."""
-
     draws: str
-    """Short description of the picture."""
-
     data: tuple[str, ...] = ()
-    """Patterns of files within a checkout that the design reads at start."""
-
     ours: tuple[Path, ...] = ()
-    """Verilog that replaces cells specific to another chip."""
-
     clock_mhz: float = 25
-    """Clock that its screen mode needs."""
 
 
 _RAYBOX = (

@@ -40,8 +40,17 @@ def seed_cycles() -> str:
             config = configure(reflections=reflections, divider_bits=bits, allow_underrun=True)
             fits = "yes" if config.group_cycles <= config.group_budget else "no"
             rows.append([reflections, bits, config.rect_cycles, config.group_cycles, config.group_budget, fits])
-    head = ["reflections", "quotient bits per cycle", "cycles per rectangle", "cycles per group, worst case"]
-    return table([*head, "budget per group", "fits"], rows)
+    return table(
+        [
+            "reflections",
+            "quotient bits per cycle",
+            "cycles per rectangle",
+            "cycles per group, worst case",
+            "budget per group",
+            "fits",
+        ],
+        rows,
+    )
 
 
 def seed_steps() -> str:
@@ -85,17 +94,22 @@ def beam_latencies() -> str:
     turned, two_lanes = replace(config, turn=True), configure(engine="beam", rows=180, scale=6, pixels=2)
     rows = [
         ["`ray_tester`, `fold_tester`", "ray-rectangle test, all rectangles at once", beam.TESTER_LATENCY],
-        ["`nearest_of_two`",
+        [
+            "`nearest_of_two`",
             f"one round of comparisons; {config.rectangles} rectangles take {beam.rounds(config)} rounds",
-            beam.contest_latency(config)],
+            beam.contest_latency(config),
+        ],
         ["`ray_fold`", "fold of the ray at its mirror", beam.FOLD_LATENCY],
         ["", "in total, from a ray to its reflection", beam.pass_latency(config)],
         ["", "in total if the camera turns, because each `fold_tester` registers its fold", beam.pass_latency(turned)],
-        ["", "in total at 1920x1080 with two pixels per clock, because each `nearest_of_two` takes one more cycle too",
-            beam.pass_latency(two_lanes)],
+        [
+            "",
+            "in total at 1920x1080 with two pixels per clock, because each `nearest_of_two` takes one more cycle too",
+            beam.pass_latency(two_lanes),
+        ],
         ["`colour_blend`", "colour of the pixel", beam.blend_latency(config)],
         ["`hit_cells`", "with patterns: cell in which the nearest rectangle is hit", beam.CELL_LATENCY],
-    ]  # fmt: skip
+    ]
     return table(["block", "function", "cycles"], rows)
 
 

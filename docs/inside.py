@@ -16,14 +16,13 @@ from raycaster.hdl.records import block_arguments, block_ports, signals_in
 class Part:
     """A block or a process inside a design, with the signals that it drives, and the others that it reads.
 
-    Its clock and its reset do not count. Signals are given by identity; `Inside.names` has their names.
+    Its clock and its reset do not count. Signals are given by identity; `Inside.names` has their names. `within` has
+    the enclosing blocks below the one that was asked for, outermost first.
     """
 
     name: str
     is_block: bool
     within: tuple[str, ...]
-    """Enclosing blocks, below the one that was asked for, outermost first."""
-
     reads: frozenset[int]
     drives: frozenset[int]
 

@@ -190,5 +190,8 @@ def _changed(then: Digests, now: Digests | str) -> Sequence[str]:
     """Name everything whose digest has changed, appeared or disappeared."""
     if isinstance(now, str):
         return [f"the command, which is refused: {now}"]
-    pairs = [(then.get(kind, {}), digests) for kind, digests in now.items()]
-    return [name for old, new in pairs for name in sorted(old.keys() | new) if old.get(name) != new.get(name)]
+    found = []
+    for kind, digests in now.items():
+        before = then.get(kind, {})
+        found += sorted(name for name in digests.keys() | before.keys() if digests.get(name) != before.get(name))
+    return found

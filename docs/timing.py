@@ -45,12 +45,13 @@ SEED = description_of(CONFIGURATION, 0)
 
 @dataclass(frozen=True)
 class Lane:
-    """A line of a diagram: its name, its signals by their names in the description, and the text for their values."""
+    """A line of a diagram: its name, its signals by their names in the description, and the text for their values.
+
+    The default signal is the one with the lane's own name.
+    """
 
     name: str
     of: tuple[str, ...] = ()
-    """Names in the description; by default the lane's own name."""
-
     text: Callable[..., str] = str
     is_signed: bool = False
 
@@ -263,10 +264,17 @@ def _wave(name: str, texts: Sequence[str | None], has_data: bool) -> dict[str, A
     """Return a lane as WaveJSON; a text of None is a gap."""
     wave, data, before = "", [], None
     for text in texts:
-        is_data = has_data and text not in (None, "x", before)
-        wave += "|" if text is None else "." if text == before else "5" if is_data else text
-        data += [text] * is_data
-        before = before if text is None else text
+        if text is None:
+            wave += "|"
+            continue
+        if text == before:
+            wave += "."
+        elif text == "x" or not has_data:
+            wave += text
+        else:
+            wave += "5"
+            data.append(text)
+        before = text
     return {"name": name, "wave": wave} | ({"data": data} if data else {})
 
 

@@ -49,11 +49,9 @@ Value = Number | str
 
 @dataclass(frozen=True)
 class Place:
-    """A moment of a ray's life."""
+    """A moment of a ray's life: the bounce is 0 for the primary ray, then one more per reflection."""
 
     bounce: int
-    """0 for the primary ray, then one more per reflection."""
-
     rectangle: int | None = None
 
     @property
@@ -65,12 +63,10 @@ class Place:
 
 @dataclass(frozen=True)
 class Event:
-    """Something that the hardware did."""
+    """Something that the hardware did; the cycle is the index of the sample that has its values."""
 
     kind: str
     cycle: int
-    """Index of the sample that has the values of the event's cycle."""
-
     place: Place
 
 
@@ -80,40 +76,39 @@ Read = Callable[["Ray", Place], Sequence[Value] | None]
 
 @dataclass(frozen=True)
 class Probe:
-    """A quantity: the signals that hold it in the hardware, and the golden model's value."""
+    """A quantity: the signals that hold it in the hardware, and the golden model's value.
+
+    Attributes:
+        quantity: name of the quantity.
+        signals: full names, or patterns that the description completes; a difference is blamed on the module with the
+            signal.
+        event: kind of event after which the signals hold the value.
+        golden: the golden model's value.
+        late: cycles from the event until the signals hold the value.
+        decode: function of the ray, the place and the samples that returns the values; None if the samples are the
+            values.
+        signed: True if the signals are in two's complement, or the indices of those that are.
+        true: value without any rounding, if rounding can change it.
+        scale: True if the values are in units of 2^-F.
+        colour: True if the values are colours, or the indices of those that are.
+        parts: names of the values, if the quantity does not name them.
+        module: module that a difference is blamed on, if not the one that contains the signal.
+        shown: True if the table shows the value even when it is right.
+    """
 
     quantity: str
     signals: tuple[str, ...]
-    """Full names, or patterns that the description completes; a difference is blamed on the module with the signal."""
-
     event: str
     golden: Read
     late: int = 0
-    """Cycles from the event until the signals hold the value."""
-
     decode: Callable[..., Sequence[Value]] | None = None
-    """Function of the ray, the place and the samples that returns the values; None if the samples are the values."""
-
     signed: bool | tuple[int, ...] = False
-    """True if the signals are in two's complement, or the indices of those that are."""
-
     true: Callable[[Ray, Place], Sequence[Number]] | None = None
-    """Value without any rounding, if rounding can change it."""
-
     scale: bool = False
-    """Values are in units of 2^-F."""
-
     colour: bool | tuple[int, ...] = False
-    """True if the values are colours, or the indices of those that are."""
-
     parts: Sequence[str] = ()
-    """Names of the values, if the quantity does not name them."""
-
     module: str = ""
-    """Module that a difference is blamed on, if not the one that contains the signal."""
-
     shown: bool = True
-    """True if the table shows the value even when it is right."""
 
     def is_signed(self, number: int) -> bool:
         """True if the signal with this index is in two's complement."""
@@ -126,14 +121,12 @@ class Probe:
 
 @dataclass(frozen=True)
 class Reading:
-    """A probe's values at one event, from the golden model and from the hardware."""
+    """A probe's values at one event, from the golden model and from the hardware; time_ns is the start of the cycle."""
 
     probe: Probe
     place: Place
     cycle: int
     time_ns: float
-    """Start of the cycle that has the values."""
-
     golden: tuple[Value, ...]
     found: tuple[Value, ...]
 
@@ -156,22 +149,21 @@ class Reading:
 
 
 class Description:
-    """Base class of the engines' descriptions."""
+    """Base class of the engines' descriptions.
+
+    Attributes:
+        probes: probes in the order in which values depend on each other.
+        event_names: each kind of event's name, and the signal that shows it.
+        video: instance of the video generator.
+        states: signals that a viewer shows, although they are neither events nor values.
+        diagrams: signals that only the manual's timing diagrams show.
+    """
 
     probes: Sequence[Probe]
-    """Probes in the order in which values depend on each other."""
-
     event_names: Mapping[str, tuple[str, str]]
-    """Each kind of event's name, and the signal that shows it."""
-
     video: str
-    """Instance of the video generator."""
-
     states: Sequence[str] = ()
-    """Signals that a viewer shows, although they are neither events nor values."""
-
     diagrams: Sequence[str] = ()
-    """Signals that only the manual's timing diagrams show."""
 
     def signals(self, name: str) -> tuple[str, ...]:
         """Return the full names of the signals of a quantity, or of the control's only signal of this name."""
