@@ -29,12 +29,7 @@ MARGIN = 32
 
 
 def add_recording_options(parser: argparse.ArgumentParser, pixel: str) -> None:
-    """Add the options that choose the design and the rows to record.
-
-    Args:
-        parser: the command's parser.
-        pixel: help text of `--pixel`.
-    """
+    """Add the options that choose the design and the rows to record, with a help text for `--pixel`."""
     add_scene_argument(parser, "scene to record (default: mirror_room)", default=find_scene("mirror_room"))
     parser.add_argument("--pixel", metavar="COLUMN,ROW", help=pixel)
     add_simulator_option(parser)
@@ -66,27 +61,20 @@ def window_clocks(configuration: Configuration, first_row: int, last_row: int) -
 
 
 def check_rows(configuration: Configuration, rows: tuple[int, int]) -> None:
-    """Check that the rows exist.
-
-    Raises:
-        UserError: they do not.
-    """
+    """Raise a UserError if the rows do not exist."""
     (first, last), most = rows, configuration.screen_geometry.rows - 1
     if not 0 <= first <= last <= most:
         raise UserError(f"span: expected rows from 0 to {most} in rising order, got {first},{last}")
 
 
 def record(model: Model, design: Design, rows: tuple[int, int], target: Path) -> Path:
-    """Simulate a scene's frame up to the last of some rows, and write the waveform of these rows.
+    """Simulate a scene's frame up to the last of some rows, write the waveform of these rows, and return its path.
 
     Args:
         model: a model with a window bench.
         design: the scene, and the configuration of the model.
         rows: the first and the last row of rays.
         target: the output directory, replaced once the waveform is complete; it also gets the simulation's log.
-
-    Returns:
-        The waveform's path.
 
     Raises:
         UserError: there are no such rows.
@@ -110,30 +98,24 @@ def record(model: Model, design: Design, rows: tuple[int, int], target: Path) ->
 
 
 def build_and_record(
-    design: Design, simulator: str, rows: tuple[int, int], target: Path, *, build: Path, console: Console
-) -> Path:
-    """Record some rows, after building the model if there is none, and show the user what is in progress.
-
-    Args:
-        design: the scene and the hardware that shows it.
-        simulator: one of `SIMULATORS`.
-        rows: the first and the last row of rays.
-        target: the output directory; see `record`.
-        build: the directory that holds `model/`.
-        console: for progress messages.
+    arguments: argparse.Namespace, design: Design, rows: tuple[int, int], target: Path, console: Console
+) -> Path | None:
+    """Record some rows like `record`, after building the model if there is none, and show the user the progress.
 
     Returns:
-        The waveform's path.
+        The waveform's path; None if the model or the simulation failed, after showing the reason.
 
     Raises:
         UserError: there are no such rows, or the simulator is missing.
-        SimulationError: the model could not be built, or the simulation failed.
     """
     check_replaceable(target)
-    find_tool(simulator)
-    with console.waiting(
-        f"building {design.configuration.name} with {simulator}", building(design.configuration.engine)
-    ):
-        model = build_model(design.configuration, simulator, build=build, bench=WINDOW_BENCH)
-    with console.waiting("simulating"):
-        return record(model, design, rows, target)
+    find_tool(arguments.simulator)
+    config, simulator = design.configuration, arguments.simulator
+    try:
+        with console.waiting(f"building {config.name} with {simulator}", building(config.engine)):
+            model = build_model(config, simulator, build=arguments.build, bench=WINDOW_BENCH)
+        with console.waiting("simulating"):
+            return record(model, design, rows, target)
+    except SimulationError as error:
+        console.print(str(error), style="red", soft_wrap=True)
+        return None

@@ -17,7 +17,6 @@ from raycaster.design import design_for
 from raycaster.errors import UserError
 from raycaster.options import CommandParser, given_options
 from raycaster.output import Console, Table, printable
-from raycaster.sim.simulator import SimulationError
 
 PIXEL_EVENTS = ("done", "shown")
 WRONG = "bold red"
@@ -26,21 +25,23 @@ ERROR_DIGITS = 3
 
 def show(ray: Ray, readings: Sequence[Reading], console: Console) -> None:
     """Print the life of a pixel: for each ray a table of its rectangles, and a table of everything else."""
-    first = first_difference(readings)
-    colour = _colour(ray.pixel, ray.config.colour_bits)
+    first, colour = first_difference(readings), _colour(ray.pixel, ray.config.colour_bits)
     console.print(f"{ray.design.path}, column {ray.column}, row {ray.row}: expected colour {colour}")
     for bounce in range(ray.reflections + 1):
         name = "the ray from the camera" if bounce == 0 else f"reflection {bounce}"
         lost = "" if ray.alive(bounce) else ": none, as the previous ray hit nothing"
         console.print(Text.assemble("\n", (name, "bold"), lost))
-        mine = [reading for reading in readings if reading.place.bounce == bounce and not _of_pixel(reading)]
-        # Values without a column in the table of rectangles are printed here if they are wrong.
-        console.print(_others(ray, [reading for reading in mine if _is_line(reading)], first))
+        # Values without a column in the table of rectangles are printed in the first table if they are wrong.
+        lines, cells = [], []
+        for reading in readings:
+            if reading.place.bounce == bounce and reading.probe.event not in PIXEL_EVENTS:
+                is_line = reading.place.rectangle is None or not reading.probe.shown
+                (lines if is_line else cells).append(reading)
+        console.print(_others(ray, lines, first))
         if ray.alive(bounce):
-            rectangles = [reading for reading in mine if not _is_line(reading)]
-            console.print(_rectangles(ray, bounce, rectangles, first))
+            console.print(_rectangles(ray, bounce, cells, first))
     console.print("\nthe pixel", style="bold")
-    console.print(_others(ray, [reading for reading in readings if _of_pixel(reading)], first))
+    console.print(_others(ray, [reading for reading in readings if reading.probe.event in PIXEL_EVENTS], first))
     console.print(
         "*: what the ray sees. left out: culled, as the ray cannot see it. exact: without rounding.", style="dim"
     )
@@ -57,7 +58,7 @@ def difference_line(ray: Ray, reading: Reading) -> str:
     golden = _one(ray, reading.probe, part, reading.golden[part])
     found = _one(ray, reading.probe, part, reading.found[part])
     of = "the ray" if reading.place.bounce == 0 else f"reflection {reading.place.bounce}"
-    if _of_pixel(reading):
+    if reading.probe.event in PIXEL_EVENTS:
         of = "the pixel"
     if reading.place.rectangle is not None:
         of += f", rectangle {_label(ray, reading.place.rectangle)}"
@@ -65,16 +66,6 @@ def difference_line(ray: Ray, reading: Reading) -> str:
         f"First difference: at {reading.time_ns:.0f} ns, {of}: {quantity} is {found}, "
         f"expected {golden}; module {reading.module}, signal {reading.signal}"
     )
-
-
-def _of_pixel(reading: Reading) -> bool:
-    """True if the reading comes after all rays."""
-    return reading.probe.event in PIXEL_EVENTS
-
-
-def _is_line(reading: Reading) -> bool:
-    """True if the reading takes a line, instead of a cell in the table of rectangles."""
-    return reading.place.rectangle is None or not reading.probe.shown
 
 
 def _others(ray: Ray, readings: Sequence[Reading], first: Reading | None) -> Table:
@@ -101,17 +92,12 @@ def _others(ray: Ray, readings: Sequence[Reading], first: Reading | None) -> Tab
 
 def _rectangles(ray: Ray, bounce: int, readings: Sequence[Reading], first: Reading | None) -> Table:
     """Make the table of rectangles: golden values, below them the hardware's values, then the exact ones."""
-    by_place: dict[tuple[int | None, str], Reading] = {}
-    probes: dict[str, Probe] = {}
-    for reading in readings:
-        probes[reading.probe.quantity] = reading.probe
-        by_place[reading.place.rectangle, reading.probe.quantity] = reading
+    by_place = {(reading.place.rectangle, reading.probe.quantity): reading for reading in readings}
+    probes = {reading.probe.quantity: reading.probe for reading in readings}
     table = Table("rectangle", "", *map(_named, probes.values()), texts=("",))
     for rectangle in range(len(ray.rectangles)):
         cells = [by_place.get((rectangle, quantity)) for quantity in probes]
-        name = _label(ray, rectangle)
-        if ray.winner(bounce) == rectangle:
-            name += " *"
+        name = _label(ray, rectangle) + " *" * (ray.winner(bounce) == rectangle)
         if not any(cells):
             table.add_row(name, "left out", style="dim", end_section=True)
             continue
@@ -121,10 +107,8 @@ def _rectangles(ray: Ray, bounce: int, readings: Sequence[Reading], first: Readi
         table.add_row("", "hardware", *(_found(ray, cell, first) if cell else "" for cell in cells))
         if any(true):
             table.add_row("", "exact", *map(_true_text, true), style="dim")
-            errors = [
-                _error_text(ray, cell.probe, cell.golden, value) if cell else ""
-                for cell, value in zip(cells, true, strict=True)
-            ]
+            pairs = zip(cells, true, strict=True)
+            errors = [_error_text(ray, cell.probe, cell.golden, value) if cell else "" for cell, value in pairs]
             table.add_row("", "error", *errors, style="dim", end_section=True)
     return table
 
@@ -205,12 +189,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     design = design_for(arguments.scene, given_options(arguments))
     ray = Ray(design, row, column)
     target = arguments.build / "trace" / design.name
-    try:
-        waves = build_and_record(
-            design, arguments.simulator, (row, row), target, build=arguments.build, console=console
-        )
-    except SimulationError as error:
-        console.print(str(error), style="red", soft_wrap=True)
+    waves = build_and_record(arguments, design, (row, row), target, console)
+    if waves is None:
         return 1
     readings = read(Waves(waves), description_of(design.configuration, ray.unit), ray)
     show(ray, readings, console)

@@ -20,7 +20,6 @@ from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.options import CommandParser, given_options
 from raycaster.output import Console
-from raycaster.sim.simulator import SimulationError
 
 MEGABYTE = 1_000_000
 
@@ -40,22 +39,13 @@ def rows_of(text: str | None, row: int) -> tuple[int, int]:
 
 
 def write_view(path: Path, design: Design, ray: Ray) -> list[Path]:
-    """Write viewers' files with the cursor at a pixel's ray.
-
-    Args:
-        path: a waveform that contains the pixel's row.
-        design: the recorded design.
-        ray: the pixel's ray.
-
-    Returns:
-        The files for GTKWave and Surfer, next to the waveform.
-    """
+    """Write files for GTKWave and Surfer next to a waveform of a pixel's row, with the cursor at the pixel's ray."""
     waves = Waves(path)
     description = description_of(design.configuration, ray.unit)
     samples = waves.sample(description.controls())
     events = description.events(samples, ray)
     cycles = [event.cycle for event in events if event.kind != "shown"] or [0, len(samples.times_ns) - 1]
-    begin, end = (samples.times_ns[max(0, cycle - 1)] for cycle in (cycles[0], max(cycles)))
+    begin, end = map(samples.begin_ns, (cycles[0], max(cycles)))
     view = View(description.groups(ray), design_states(design.configuration), begin, end)
     return write_files(waves, view)
 
@@ -95,10 +85,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         raise UserError(f"span: rows {rows[0]} to {rows[1]} do not include the pixel's row {row}")
     console = Console(soft_wrap=True)
     target = arguments.build / "wave" / design.name
-    try:
-        waves = build_and_record(design, arguments.simulator, rows, target, build=arguments.build, console=console)
-    except SimulationError as error:
-        console.print(str(error), style="red")
+    waves = build_and_record(arguments, design, rows, target, console)
+    if waves is None:
         return 1
     files = write_view(waves, design, ray)
     size = waves.stat().st_size / MEGABYTE

@@ -7,11 +7,12 @@ import io
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 from vcd.gtkw import GTKWFlag, GTKWSave, make_translation_filter
 
-from raycaster.debug.probes.ray import module_of
+from raycaster.debug.probes import module_of
 from raycaster.debug.waves import RANGE, Waves
 from raycaster.errors import UserError
 
@@ -35,40 +36,32 @@ PIXELS_A_FRAME = 200
 SURFER_DIGITS = "abcdefghijklmnop"
 """The sixteen digits with which Surfer numbers its items."""
 
-States = Mapping[tuple[str, str], Mapping[int, str]]
-
 
 @dataclass(frozen=True)
 class View:
-    """Contents of a viewer's window."""
+    """Contents of a viewer's window.
+
+    Attributes:
+        groups: signals by group; see `raycaster.debug.probes.ray.Description`.
+        states: names of an enumerated signal's values, by module and signal.
+        cursor_ns: time of the cursor, where the visible time begins.
+        end_ns: end of the time that is visible at first.
+    """
 
     groups: Mapping[str, Sequence[str]]
-    """Signals by group; see `raycaster.debug.probes.ray.Description`."""
-
-    states: States
-    """Names of an enumerated signal's values, by module and signal."""
-
+    states: Mapping[tuple[str, str], Mapping[int, str]]
     cursor_ns: float
     end_ns: float
-    """End of the time that is visible at first."""
-
-
-def signal_names(view: View) -> list[str]:
-    """List the full names of all signals shown."""
-    return [_name_and_kind(name)[0] for names in view.groups.values() for name in names]
 
 
 def write_files(waves: Waves, view: View) -> list[Path]:
-    """Write all files next to a waveform; each file appears complete.
-
-    Returns:
-        The files for GTKWave and Surfer.
+    """Write all files next to a waveform, each of which appears complete; return those for GTKWave and Surfer.
 
     Raises:
         UserError: the waveform lacks a signal.
     """
-    for name in signal_names(view):
-        waves.width(name)
+    for name in chain.from_iterable(view.groups.values()):
+        waves.width(_name_and_kind(name)[0])
     directory = waves.path.resolve().parent
     filters = {}
     for place, names in view.states.items():

@@ -14,7 +14,7 @@ import difflib
 import math
 import re
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -44,6 +44,10 @@ class Samples:
     """One value per edge, by signal: the value just before the edge, which registers capture. Unsigned; None if any bit
     is unknown, floating or not yet recorded."""
 
+    def begin_ns(self, cycle: int) -> float:
+        """Return the start of the cycle that a sample ends, where a viewer shows the cycle's values."""
+        return self.times_ns[max(0, cycle - 1)]
+
 
 class Waves:
     """A waveform file: FST or VCD, as this project's benches write it.
@@ -51,6 +55,8 @@ class Waves:
     A name is the path of instances from the bench down, with dots: `bench.dut.ray_caster_renderer_i.row`. An element of
     a memory has its number after the memory's name, in brackets. Methods that return values or widths also accept a
     range of a signal's bits: `bench.dut.rect_mem_i.rects_rect_word[24:23]`, or `[23:23]` for one bit.
+
+    Each method raises a UserError if there is no such signal or clock, or if the signal lacks these bits.
     """
 
     def __init__(self, path: Path, clock: str = CLOCK):
@@ -113,20 +119,12 @@ class Waves:
         return round(time_ns / self._tick_ns)
 
     def width(self, name: str) -> int:
-        """Number of bits of a signal.
-
-        Raises:
-            UserError: there is no such signal, or it lacks these bits.
-        """
+        """Number of bits of a signal."""
         _, high, low = self.bits(name)
         return high - low + 1
 
     def bits(self, name: str) -> tuple[str, int, int]:
-        """Split a name into the signal, and the highest and the lowest bit of the range.
-
-        Raises:
-            UserError: there is no such signal, or it lacks these bits.
-        """
+        """Split a name into the signal, and the highest and the lowest bit of the range."""
         found = RANGE.fullmatch(name)
         signal = found[1] if found else name
         width = self._variable(signal).bitwidth
@@ -139,7 +137,7 @@ class Waves:
         """Return the times of the clock's first and last changes, in ns.
 
         Raises:
-            UserError: there is no such clock, or it never changes.
+            UserError: the clock never changes.
         """
         times, _ = self._history(self._clock)
         if not times:
@@ -147,39 +145,27 @@ class Waves:
         return times[0] * self._tick_ns, times[-1] * self._tick_ns
 
     def value(self, name: str, time_ns: float) -> int | None:
-        """Return a signal's value at a time, including changes at that very time; see `Samples.values`.
-
-        Raises:
-            UserError: there is no such signal.
-        """
+        """Return a signal's value at a time, including changes at that very time; see `Samples.values`."""
         times, values = self._history(name)
         place = bisect_right(times, self.ticks(time_ns))
         return values[place - 1] if place else None
 
     def changes(self, name: str) -> list[tuple[float, int | None]]:
-        """List a signal's changes: the time in ns and the new value, beginning with the initial value.
-
-        Raises:
-            UserError: there is no such signal.
-        """
+        """List a signal's changes: the time in ns and the new value, beginning with the initial value."""
         return [(time * self._tick_ns, value) for time, value in zip(*self._history(name), strict=True)]
 
     def edges(self, start_ns: float = 0, end_ns: float = math.inf) -> list[float]:
-        """List the clock's rising edges from start_ns on and before end_ns.
-
-        Raises:
-            UserError: there is no such clock.
-        """
+        """List the clock's rising edges from start_ns on and before end_ns."""
         return [time * self._tick_ns for time in self._edge_ticks(start_ns, end_ns)]
 
     def sample(self, names: Iterable[str], start_ns: float = 0, end_ns: float = math.inf) -> Samples:
-        """Sample signals at each rising edge from start_ns on and before end_ns.
-
-        Raises:
-            UserError: there is no such clock or signal.
-        """
+        """Sample signals at each rising edge from start_ns on and before end_ns."""
         edges = self._edge_ticks(start_ns, end_ns)
-        values = {name: _before(edges, *self._history(name)) for name in names}
+        values = {}
+        for name in names:
+            times, after = self._history(name)
+            places = [bisect_left(times, edge) for edge in edges]
+            values[name] = [after[place - 1] if place else None for place in places]
         return Samples([edge * self._tick_ns for edge in edges], values)
 
     def _edge_ticks(self, start_ns: float, end_ns: float) -> list[int]:
@@ -215,16 +201,6 @@ def _bits_of(value: int | str | float | None, high: int, low: int) -> int | None
         text = value[len(value) - 1 - high : len(value) - low]
         return int(text, 2) if text and set(text) <= {"0", "1"} else None
     return value >> low & (1 << high - low + 1) - 1 if isinstance(value, int) else None
-
-
-def _before(edges: Sequence[int], times: Sequence[int], values: Sequence[int | None]) -> list[int | None]:
-    """Return the value just before each edge."""
-    sampled, place = [], 0
-    for edge in edges:
-        while place < len(times) and times[place] < edge:
-            place += 1
-        sampled.append(values[place - 1] if place else None)
-    return sampled
 
 
 def signed(value: int | None, bits: int) -> int | None:

@@ -75,14 +75,11 @@ GROUP_OF_API = "Reference"
 
 
 def write_site(output: Path, web: Path | None = None) -> Path:
-    """Write all pages.
+    """Write all pages, and return the path of the first one.
 
     Args:
         output: the directory, replaced as a whole once all pages are built.
         web: directory of the page that runs the hardware, to include in the manual.
-
-    Returns:
-        The path of the first page.
 
     Raises:
         UserError: Sphinx has printed a warning or an error.
@@ -94,9 +91,7 @@ def write_site(output: Path, web: Path | None = None) -> Path:
         if web:
             shutil.copytree(web, pages / "extra" / "web")
             index = pages / "index.md"
-            index.write_text(
-                re.sub(r"^\[!\[(.*)\]\((.*)\)\]\(.*\)$", LIVE, index.read_text(), count=1, flags=re.MULTILINE)
-            )
+            index.write_text(re.sub(r"(?m)^\[!\[(.*)\]\((.*)\)\]\(.*\)$", LIVE, index.read_text(), count=1))
         write_page(configure().rectangles, pages / "extra" / "register_map")
         if build_main(["-q", "-W", "--keep-going", "-d", f"{scratch}/doctrees", str(pages), str(written)]):
             raise UserError("the pages have faults, listed above")

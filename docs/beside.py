@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import shutil
 import subprocess
@@ -51,32 +50,29 @@ FRAME = 800 * 525
 
 @dataclass(frozen=True)
 class Other:
-    """Design of another project."""
+    """Design of another project.
+
+    Attributes:
+        title: its name.
+        address: URL of its repository.
+        top: top module, which is measured.
+        sources: Verilog files within a checkout, in order.
+        defines: macros for the C++ program that clocks the design.
+        draws: short description of the picture.
+        data: patterns of files within a checkout that the design reads at start.
+        ours: Verilog that replaces cells specific to another chip.
+        clock_mhz: clock that its screen mode needs.
+    """
 
     title: str
     address: str
-    """URL of its repository."""
-
     top: str
-    """Top module, which is measured."""
-
     sources: tuple[str, ...]
-    """Verilog files within a checkout, in order."""
-
     defines: Mapping[str, str]
-    """Macros for the C++ program that clocks the design."""
-
     draws: str
-    """Short description of the picture."""
-
     data: tuple[str, ...] = ()
-    """Patterns of files within a checkout that the design reads at start."""
-
     ours: tuple[Path, ...] = ()
-    """Verilog that replaces cells specific to another chip."""
-
     clock_mhz: float = 25
-    """Clock that its screen mode needs."""
 
 
 _RAYBOX = (
@@ -110,12 +106,7 @@ OURS = ({"engine": "exact"}, {"engine": "beam"})
 
 
 def measure_other(other: Other, checkout: Path, directory: Path) -> dict[str, Any]:
-    """Measure a design's cells, routed clock and time per frame.
-
-    Args:
-        other: the design.
-        checkout: checkout of its repository.
-        directory: directory for input and output files.
+    """Measure a design's cells, routed clock and time per frame in a directory, from a checkout of its repository.
 
     Raises:
         UserError: the checkout lacks a file, or a tool refuses one.
@@ -124,8 +115,9 @@ def measure_other(other: Other, checkout: Path, directory: Path) -> dict[str, An
     text = directory / "design.v"
     # Join the files, because later ones use macros that earlier ones define.
     text.write_text("\n".join(path.read_text() for path in _sources(other, checkout)))
-    for path in itertools.chain.from_iterable(map(checkout.glob, other.data)):
-        shutil.copy(path, directory)
+    for pattern in other.data:
+        for path in checkout.glob(pattern):
+            shutil.copy(path, directory)
     script = [f"read_verilog -sv {text.name}", f"synth_ecp5 -top {other.top} -json netlist.json"]
     run_yosys(directory, "synthesis", script)
     cells = json.loads((directory / "netlist.json").read_text())["modules"][other.top]["cells"]
@@ -194,8 +186,8 @@ def measure_software(scene: Scene, screen: Screen, directory: Path) -> list[dict
     if wrong := count_wrong(drawn, right):
         raise UserError(f"{SOFTWARE.name}: draws {wrong} pixels unlike the golden model")
     common = {"commit": commit_of(HERE), "draws": "the same scene", "pixels": screen.columns * screen.rows}
-    names = {"numpy, exact arithmetic": took, "C++ loop, exact arithmetic": frame_s}
-    return [{"design": name, **common, "frame_s": seconds} for name, seconds in names.items()]
+    times = {"numpy": took, "C++ loop": frame_s}
+    return [{"design": f"{name}, exact arithmetic", **common, "frame_s": times[name]} for name in times]
 
 
 def _area(area: Area) -> dict[str, int]:
@@ -274,7 +266,7 @@ def measure_beside(
         scene: name of the packaged scene that the software and our hardware draw.
         checkouts: checkouts of other projects, by name.
         output: directory that is replaced after all measurements.
-        console: console for progress, the table and the failures.
+        console: for progress, the table and the failures.
 
     Returns:
         A row for each design that did not fail, and a line for each one that did.

@@ -77,21 +77,16 @@ def _key(part: Part) -> str:
 
 def nets(inside: Inside) -> list[Net]:
     """Return the nets between the parts, and between the parts and the ports."""
-    drivers, readers = defaultdict(set), defaultdict(set)
-    for part in inside.parts:
-        for signal in part.drives:
-            drivers[signal].add(_key(part))
-        for signal in part.reads:
-            readers[signal].add(_key(part))
     together = defaultdict(list)
     for signal, name in inside.names.items():
         if name[1] in EVERYWHERE:
             continue
         is_port = signal in inside.ports
-        ends = frozenset(drivers[signal]), frozenset(readers[signal] - drivers[signal]), is_port
+        drivers = frozenset(_key(part) for part in inside.parts if signal in part.drives)
+        readers = frozenset(_key(part) for part in inside.parts if signal in part.reads) - drivers
         # A signal without a reader or a driver here is a constant, or belongs to another design.
-        if (ends[0] or is_port) and (ends[1] or (is_port and ends[0])):
-            together[ends].append(name)
+        if (drivers or is_port) and (readers or (is_port and drivers)):
+            together[drivers, readers, is_port].append(name)
     return [Net(_labels(names), *ends) for ends, names in together.items()]
 
 
@@ -151,10 +146,10 @@ def graph(drawing: Drawing, inside: Inside) -> pygraphviz.AGraph:
                 )  # fmt: skip
         key = _key(part)
         label = part.name if counts[key] == 1 else f"{part.name}\nx {counts[key]}"
-        look = {"shape": "box", "style": "filled", "fillcolor": BLOCK_FILL}
+        look = {"style": "filled", "fillcolor": BLOCK_FILL}
         if not part.is_block:
-            look = {"shape": "box", "style": "filled,rounded", "fillcolor": PROCESS_FILL, "fontsize": 10, "color": PALE}
-        clusters[part.within].add_node(key, label=label, **look)
+            look = {"style": "filled,rounded", "fillcolor": PROCESS_FILL, "fontsize": 10, "color": PALE}
+        clusters[part.within].add_node(key, label=label, shape="box", **look)
     places = {_key(part): part.within for part in inside.parts}
     for number, net in enumerate(nets(inside)):
         around = () if net.is_port else _in_common(places[part] for part in net.drivers | net.readers)

@@ -58,15 +58,7 @@ def outside_make() -> dict[str, str]:
 
 
 def run(command: str, log: Path) -> tuple[int, float]:
-    """Run a command in the project's root.
-
-    Args:
-        command: the command, as printed on a page.
-        log: file for its output.
-
-    Returns:
-        Its exit code, and its run time in seconds.
-    """
+    """Run a command from a page in the project's root, with its output in a file; return its exit code and seconds."""
     more = next((words for start, words in UNATTENDED.items() if command.startswith(start)), ())
     environment = outside_make() | {"SDL_VIDEODRIVER": "dummy"}
     started = time.monotonic()
@@ -89,11 +81,7 @@ def command_parser() -> CommandParser:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command and return its exit code.
-
-    Args:
-        argv: the arguments; by default those of the process.
-    """
+    """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
     need_clone()
     chosen = [command for command in commands_of(PAGES) if arguments.only in command]

@@ -186,7 +186,7 @@ def facts() -> dict[str, str]:
         "units": str(default.units),
         "rectangles": str(default.rectangles),
         "rect_cycles": str(default.rect_cycles),
-        "seed_latency": str(configure().pass_latency),
+        "seed_latency": str(default.pass_latency),
         "overhead": str(exact.Exact.GROUP_OVERHEAD),
         "verdict": str(exact.WRITE_AT + 1),
         "exact_latency": str(configure(engine="exact").pass_latency),

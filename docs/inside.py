@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 
 from myhdl import ConcatSignal
@@ -16,14 +16,13 @@ from raycaster.hdl.records import block_arguments, block_ports, signals_in
 class Part:
     """A block or a process inside a design, with the signals that it drives, and the others that it reads.
 
-    Its clock and its reset do not count. Signals are given by identity; `Inside.names` has their names.
+    Its clock and its reset do not count. Signals are given by identity; `Inside.names` has their names. `within` has
+    the enclosing blocks below the one that was asked for, outermost first.
     """
 
     name: str
     is_block: bool
     within: tuple[str, ...]
-    """Enclosing blocks, below the one that was asked for, outermost first."""
-
     reads: frozenset[int]
     drives: frozenset[int]
 
@@ -65,51 +64,46 @@ def look_inside(top: Block, opened: Collection[str]) -> Inside:
             for path, signal in signals_in(name, value):
                 names.setdefault(id(signal), (name, path))
         for sub in block.subs:
-            if isinstance(sub, Block) and sub.func.__name__ in opened:
-                visit(sub, (*within, sub.func.__name__))
-            elif isinstance(sub, Block):
-                around = _whole({id(signal): signal for signal in block_ports(sub).values()})
-                reads, drives = (_whole(signals) & around for signals in _traffic(sub))
-                parts.append(Part(sub.func.__name__, True, within, reads - drives, drives))
-            else:
-                reads, drives = (_whole(signals) for signals in _traffic_of_process(sub))
-                parts.append(Part(sub.func.__name__, False, within, reads - drives, drives))
+            name = sub.func.__name__
+            if isinstance(sub, Block) and name in opened:
+                visit(sub, (*within, name))
+                continue
+            reads, drives = map(_whole, _traffic(sub))
+            if isinstance(sub, Block):
+                around = _whole(block_ports(sub).values())
+                reads, drives = reads & around, drives & around
+            parts.append(Part(name, isinstance(sub, Block), within, reads - drives, drives))
 
     visit(top, ())
     return Inside(tuple(parts), names, frozenset(id(signal) for signal in ports.values()))
 
 
-Signals = dict[int, SignalType]
+def _traffic(part: Block | Process) -> tuple[list[SignalType], list[SignalType]]:
+    """Return the signals that a process, or a block with everything below it, reads, and those that it drives.
 
-
-def _traffic(block: Block) -> tuple[Signals, Signals]:
-    """Return all signals that are read, and all that are driven, in a block and below."""
-    given = getattr(block.func, "given_verilog", None)
-    reads: Signals = {}
-    drives: Signals = {}
-    if given:
-        for name, signal in block_ports(block).items():
-            (drives if name in given.outputs else reads)[id(signal)] = signal
-    for sub in block.subs:
-        more_reads, more_drives = _traffic(sub) if isinstance(sub, Block) else _traffic_of_process(sub)
-        reads |= more_reads
-        drives |= more_drives
+    The edges and the reset that a process waits for do not count.
+    """
+    if isinstance(part, Process):
+        reads, drives = (
+            [signal for name in names for _, signal in signals_in(name, part.symdict[name])]
+            for names in (part.inputs, part.outputs)
+        )
+        return reads, drives
+    reads, drives = [], []
+    if given := getattr(part.func, "given_verilog", None):
+        for name, signal in block_ports(part).items():
+            (drives if name in given.outputs else reads).append(signal)
+    for sub in part.subs:
+        more_reads, more_drives = _traffic(sub)
+        reads += more_reads
+        drives += more_drives
     return reads, drives
 
 
-def _traffic_of_process(process: Process) -> tuple[Signals, Signals]:
-    """Return the signals that a process reads, and those that it drives, except the edges and reset it waits for."""
-
-    def find(names: Collection[str]) -> Signals:
-        return {id(signal): signal for name in names for _, signal in signals_in(name, process.symdict[name])}
-
-    return find(process.inputs), find(process.outputs)
-
-
-def _whole(signals: Signals) -> frozenset[int]:
+def _whole(signals: Iterable[SignalType]) -> frozenset[int]:
     """Replace slices and concatenations by their whole signals."""
     found: set[int] = set()
-    waiting = list(signals.values())
+    waiting = list(signals)
     while waiting:
         signal = waiting.pop()
         if isinstance(signal, SliceSignal):

@@ -22,12 +22,7 @@ MADE = re.compile(r"<!--(\w+)-->(.*?)<!--/-->", re.DOTALL)
 
 
 def rendered(text: str, values: Mapping[str, str], place: str) -> str:
-    """Return a page with these values between its markers.
-
-    Args:
-        text: the page.
-        values: Markdown text, by marker name.
-        place: name of the page, for error messages.
+    """Return a page with these values, by marker name, between its markers.
 
     Raises:
         UserError: a marker has no value.
@@ -54,10 +49,7 @@ def need_clone() -> None:
 
 
 def render_all(values: Mapping[str, str]) -> list[Path]:
-    """Update the generated text of all pages.
-
-    Returns:
-        The pages that have changed.
+    """Update the generated text of all pages, and return those that have changed.
 
     Raises:
         UserError: as for `rendered`.

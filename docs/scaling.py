@@ -4,8 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -51,13 +50,20 @@ SERIES = (
 )
 
 
-def provenance() -> Provenance:
-    """Return the designs, sources and tools that decide these figures."""
-    designs = []
+def _designs() -> Iterator[tuple[dict[str, Any], Configuration | ConfigurationError]]:
+    """Yield the engine, the option and its value for each design of `SERIES`, and the design or why it is refused."""
     for series in SERIES:
         for value in series.values:
-            with suppress(ConfigurationError):
-                designs.append(configure(**{"engine": series.engine, series.option: value}))
+            row = {"engine": series.engine, "option": series.option, "value": value}
+            try:
+                yield row, configure(**{"engine": series.engine, series.option: value})
+            except ConfigurationError as error:
+                yield row, error
+
+
+def provenance() -> Provenance:
+    """Return the designs, sources and tools that decide these figures."""
+    designs = [design for _, design in _designs() if isinstance(design, Configuration)]
     return Provenance(designs, [*DECIDES, "sim/main.cpp", "play/machine.cpp"], [*TOOLS, "verilator"])
 
 
@@ -91,30 +97,23 @@ def frame_time(config: Configuration, build: Path) -> float:
 def measure_scaling(output: Path, build: Path, console: Console) -> list[dict[str, Any]]:
     """Measure all designs of `SERIES`: cells, cycles and frame time, or the reason why a design is refused.
 
-    Args:
-        output: directory for the netlists.
-        build: the directory that holds `model/`.
-        console: console for the progress bars.
+    Netlists go to `output`, and models below `build`.
 
     Raises:
         UserError: a tool is missing or failed.
     """
     rows, wanted = [], {}
-    for series in SERIES:
-        for value in series.values:
-            row = {"engine": series.engine, "option": series.option, "value": value}
-            rows.append(row)
-            try:
-                config = configure(**{"engine": series.engine, series.option: value})
-            except ConfigurationError as error:
-                row["refused"] = str(error)
-                continue
-            wanted[config.name] = config
-            row |= {
-                "name": config.name, "units": config.units, "group_cycles": config.group_cycles,
-                "frame_cycles": config.group_cycles * config.groups * config.screen_geometry.rows,
-                "clock_mhz": config.screen_geometry.clock_hz / 1e6,
-            }  # fmt: skip
+    for row, config in _designs():
+        rows.append(row)
+        if isinstance(config, ConfigurationError):
+            row["refused"] = str(config)
+            continue
+        wanted[config.name] = config
+        row |= {
+            "name": config.name, "units": config.units, "group_cycles": config.group_cycles,
+            "frame_cycles": config.group_cycles * config.groups * config.screen_geometry.rows,
+            "clock_mhz": config.screen_geometry.clock_hz / 1e6,
+        }  # fmt: skip
     count = partial(_count, output=output)
     areas = run_jobs("counting", count, list(wanted.values()), threads(JOBS), console)
     cells = {name: vars(area) for name, area in zip(wanted, areas, strict=True)}

@@ -75,9 +75,7 @@ def _checks(*kept: Outcome) -> str:
     rows = []
     for check in CHECKS:
         of_it = [by_name[name] for name in check.kept]
-        commands, dates = (
-            "<br>".join(texts) for texts in zip(*((f"`{one.asked()}`", one.when) for one in of_it), strict=True)
-        )
+        commands, dates = "<br>".join(f"`{one.asked()}`" for one in of_it), "<br>".join(one.when for one in of_it)
         rows.append([check.title, check.engine, check.body(*of_it), commands, dates])
     return table(["check", "engine", "result", "command", "measured"], rows)
 
@@ -159,8 +157,7 @@ def _current(commands: Sequence[str]) -> Mapping[str, Digests | str]:
             made = (each.digests(known) if isinstance(each, Provenance) else each for each in described)
             found |= zip(wanted, made, strict=True)
             partly = store.with_suffix(".partial")
-            kept = {"state": state, "found": found, "hardware": hardware, "designs": known}
-            partly.write_text(json.dumps(kept))
+            partly.write_text(json.dumps({"state": state, "found": found, "hardware": hardware, "designs": known}))
             partly.replace(store)
     return found
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import re
 import tempfile
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, pairwise
@@ -44,12 +45,13 @@ SEED = description_of(CONFIGURATION, 0)
 
 @dataclass(frozen=True)
 class Lane:
-    """A line of a diagram: its name, its signals by their names in the description, and the text for their values."""
+    """A line of a diagram: its name, its signals by their names in the description, and the text for their values.
+
+    The default signal is the one with the lane's own name.
+    """
 
     name: str
     of: tuple[str, ...] = ()
-    """Names in the description; by default the lane's own name."""
-
     text: Callable[..., str] = str
     is_signed: bool = False
 
@@ -168,9 +170,7 @@ DIAGRAMS = (
     ),
     Diagram(
         "enable_and_reset",
-        {
-            "renderer": "done restart reset_delay reset_ray_caster place_column_offset enable steps_screen_to_ray",
-        },
+        {"renderer": "done restart reset_delay reset_ray_caster place_column_offset enable steps_screen_to_ray"},
         lambda frame: [(cycle - 2, cycle + 8) for cycle in (frame.done(0, 0), frame.done(0, -1))],
         [("done", 0, "screen_to_ray", 0)],
     ),
@@ -216,14 +216,7 @@ DIAGRAMS = (
 
 
 def simulate(build: Path, verilog: Sequence[Path] | None = None) -> Iterator[tuple[str, str]]:
-    """Simulate the design and draw each diagram.
-
-    Args:
-        build: the directory that holds `model/`.
-        verilog: as for `build_model`.
-
-    Yields:
-        A diagram's name, and its WaveJSON.
+    """Simulate the design and yield each diagram's name and WaveJSON; the arguments are those of `build_model`.
 
     Raises:
         UserError: Icarus Verilog is missing, or an event of a diagram no longer occurs in the simulation.
@@ -243,14 +236,13 @@ def simulate(build: Path, verilog: Sequence[Path] | None = None) -> Iterator[tup
 def wave_json(diagram: Diagram, frame: Frame) -> str:
     """Return a diagram as WaveJSON, one lane per line."""
     columns: list[int | None] = []  # None marks a gap
-    texts: dict[str, dict[int, str]] = {}
+    texts: dict[str, dict[int, str]] = defaultdict(dict)
     lanes = list(chain.from_iterable(map(diagram.lanes, diagram.groups)))
     for start, end in diagram.windows(frame):
         cycles = range(start, end)
-        seen = {lane.name: dict(zip(cycles, frame.texts(lane, cycles), strict=True)) for lane in lanes}
         columns += [*([None] if columns else []), *cycles]
-        for name, values in seen.items():
-            texts.setdefault(name, {}).update(values)
+        for lane in lanes:
+            texts[lane.name].update(zip(cycles, frame.texts(lane, cycles), strict=True))
     nodes, edges = _place_arrows(diagram.arrows, columns, texts)
 
     def draw(lane: Lane) -> dict[str, Any]:
@@ -270,8 +262,7 @@ def wave_json(diagram: Diagram, frame: Frame) -> str:
 
 def _wave(name: str, texts: Sequence[str | None], has_data: bool) -> dict[str, Any]:
     """Return a lane as WaveJSON; a text of None is a gap."""
-    wave, data = "", []
-    before = None
+    wave, data, before = "", [], None
     for text in texts:
         if text is None:
             wave += "|"
@@ -289,10 +280,9 @@ def _wave(name: str, texts: Sequence[str | None], has_data: bool) -> dict[str, A
 
 def _count(columns: Sequence[int | None]) -> dict[str, Any]:
     """Return the lane that numbers the first cycle, and the first cycle after each gap."""
-    wave = "".join(
-        "|" if cycle is None else "2" if i == 0 or columns[i - 1] is None else "." for i, cycle in enumerate(columns)
-    )
-    data = [str(columns[i]) for i, symbol in enumerate(wave) if symbol == "2"]
+    pairs = pairwise([None, *columns])
+    wave = "".join("|" if cycle is None else "2" if before is None else "." for before, cycle in pairs)
+    data = [str(cycle) for cycle, symbol in zip(columns, wave, strict=True) if symbol == "2"]
     return {"name": "cycle", "wave": wave, "data": data}
 
 

@@ -13,16 +13,8 @@ from raycaster.sim.ensure_tools import find, missing
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-FLAGS = (
-    "--headless",
-    "--no-sandbox",  # root in a container may not create a sandbox
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-)
+FLAGS = ("--disable-gpu", "--disable-quic")
+"""Flags in addition to those of Playwright, which has no window, sandbox or background traffic by default."""
 
 
 @contextmanager

@@ -64,12 +64,7 @@ class Golden(ABC):
 
 
 class NativeGolden(Golden):
-    """The program compiled for this machine, unless it is already compiled.
-
-    Args:
-        build: directory that holds `model/`.
-        source: the program.
-        flags: further flags for the compiler.
+    """The program compiled for this machine below `build`, unless it is already compiled.
 
     Raises:
         UserError: the program cannot be compiled.

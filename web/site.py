@@ -8,13 +8,14 @@ import base64
 import gzip
 import json
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from raycaster.configuration import LOOKS, WORLD_SIZE, Configuration, configure
+from raycaster.complaints import LONGEST_SHOWN
+from raycaster.configuration import LOOKS, MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.engines import SEED
 from raycaster.errors import UserError
@@ -25,26 +26,16 @@ from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_
 from raycaster.output import Console, replaced
 from raycaster.play.walk import DRAG, STEEPEST, STEP, TURN, TURNS, WALKS
 from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
-from raycaster.scene import packaged_scenes
+from raycaster.scene import COMPLAINTS, PATTERNS, Scene, packaged_scenes
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
 from raycaster.web.browser import browser_page
-from raycaster.web.scene_schema import scene_schema
-from raycaster.web.speed import speed, speed_table
+from raycaster.web.speed import HEADINGS, speed, speed_table, speed_texts
 from raycaster.web.taps import tap_facts
 from raycaster.web.wasm import golden_wasm, machine_wasm
 
 PAGE = Path(__file__).with_name("page")
-SCRIPTS = (
-    "vendor/smol-toml.js",
-    "scene.js",
-    "hardware.js",
-    "settings.js",
-    "page.js",
-    "engines.js",
-    "life.js",
-    "pixel.js",
-)
+SCRIPTS = ("vendor/smol-toml", "scene", "hardware", "settings", "page", "engines", "life", "pixel")
 """Scripts in loading order; `settings.js` is generated."""
 
 FIRST_SCENE = "mirror_room"
@@ -110,9 +101,29 @@ def _build(model: Model, build: Path) -> tuple[bytes, dict[str, Any]]:
     return wasm, described(config) | ({"taps": tap_facts(config)} if model.taps else {})
 
 
+def scene_schema() -> dict[str, object]:
+    """Build the rules of scene files for `RayCasterScene.read`, from the model that checks them on the command line.
+
+    `model` is the JSON schema of `Scene`: tables, their keys in order, defaults, and the `checks` of each value in the
+    order in which they are applied. `complaints` are the other messages, with placeholders in braces. `longest_shown`
+    is in characters, and `most_rectangles` is the limit of any hardware. `patterns` are in the order of the register
+    codes.
+    """
+    return {
+        "model": Scene.model_json_schema(),
+        "complaints": dict(COMPLAINTS),
+        "longest_shown": LONGEST_SHOWN,
+        "most_rectangles": MOST_RECTANGLES,
+        "patterns": list(PATTERNS),
+    }
+
+
 def _settings(*, test: bool) -> dict[str, Any]:
     """Return the parts of the project that the page uses, such as scenes, keys and step sizes."""
-    keys = {name: [BROWSER_KEYS.get(key, key) for key in held] for name, held in (WALK_KEYS | TURN_KEYS).items()}
+
+    def keys(of: Mapping[str, Iterable[str]]) -> dict[str, list[str]]:
+        return {name: [BROWSER_KEYS.get(key, key) for key in held] for name, held in of.items()}
+
     return {
         "test": test,
         "worker": (PAGE / "machine.js").read_text(),
@@ -120,7 +131,7 @@ def _settings(*, test: bool) -> dict[str, Any]:
         "scenes": {name: path.read_text() for name, path in packaged_scenes().items()},
         "walk": {
             "step": STEP, "turn": TURN, "drag": DRAG, "steepest": STEEPEST, "world_size": WORLD_SIZE,
-            "buttons": [*WALKS, *TURNS], "keys": keys, "first": FIRST_SCENE,
+            "buttons": [*WALKS, *TURNS], "keys": keys(WALK_KEYS | TURN_KEYS), "first": FIRST_SCENE,
             "rectangles": WALKS_MODELS[0].configuration.rectangles,
             "models": [
                 {
@@ -130,10 +141,7 @@ def _settings(*, test: bool) -> dict[str, Any]:
                 for model in WALKS_MODELS
             ],
         },
-        "game": {
-            "buttons": list(BUTTON_NAMES),
-            "keys": {name: [BROWSER_KEYS.get(key, key) for key in held] for name, held in GAME_KEYS.items()},
-        },
+        "game": {"buttons": list(BUTTON_NAMES), "keys": keys(GAME_KEYS)},
         "seed": {"fractions": list(FRACTIONS), "lacks": dict(SEED.lacks)},
     }  # fmt: skip
 
@@ -158,20 +166,15 @@ def write_site(
         SimulationError: a design could not be compiled.
     """
     firmware = build_firmware((build / "firmware").absolute()).words.read_text()
-    built = run_jobs(
-        "models", partial(_build, build=build), models, processes(2), console,
-        label=lambda model: model.name,
-    )  # fmt: skip
+    make, pool = partial(_build, build=build), processes(2)
+    built = run_jobs("models", make, models, pool, console, label=lambda model: model.name)
     with replaced(output) as site:
         (site / "models").mkdir()
-        contents = {
-            model.name: (*of, firmware if model.processor else None) for model, of in zip(models, built, strict=True)
-        }
-        contents["golden"] = golden_wasm(build).read_bytes(), {}, None
-        for name, (wasm, design, program) in contents.items():
-            value = {"design": design, "wasm": packed(wasm)}
-            if program:
-                value["program"] = packed(program.encode())
+        contents = {model.name: of for model, of in zip(models, built, strict=True)}
+        contents["golden"] = golden_wasm(build).read_bytes(), {}
+        programs = {model.name: {"program": packed(firmware.encode())} for model in models if model.processor}
+        for name, (wasm, design) in contents.items():
+            value = {"design": design, "wasm": packed(wasm), **programs.get(name, {})}
             text = f"RayCaster.models[{json.dumps(name)}] = {json.dumps(value)};\n"
             (site / "models" / f"{name}.js").write_text(text)
         for path in PAGE.iterdir():
@@ -180,7 +183,7 @@ def write_site(
         settings = json.dumps(_settings(test=test), separators=(",", ":"))
         (site / "settings.js").write_text(f"Object.assign(RayCaster, {settings});\n")
         page = site / "index.html"
-        tags = "\n".join(f'<script src="{name}"></script>' for name in SCRIPTS)
+        tags = "\n".join(f'<script src="{name}.js"></script>' for name in SCRIPTS)
         page.write_text(page.read_text().replace("<!-- SCRIPTS -->", tags))
     return sum(len(gzip.compress(path.read_bytes(), 9)) for path in output.rglob("*") if path.is_file())
 
@@ -205,25 +208,15 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
 
 def _page_speed(kept: Outcome) -> str:
     """Frame times of the page's walk, compared with the same design compiled natively on the same machine."""
-    rows = [
-        [
-            f"`{row['scene']}`", f"{row['browser_ms']:.0f} ms", f"{row['native_ms']:.0f} ms",
-            f"{row['browser_ms'] / row['native_ms']:.2f}", f"{row['shown']:.1f}",
-        ]
-        for row in kept.figures["scenes"]
-    ]  # fmt: skip
-    return table(["scene", "frame in Chromium", "natively", "ratio", "frames per second on the page"], rows)
+    rows = ([f"`{row['scene']}`", *speed_texts(row)] for row in kept.figures["scenes"])
+    return table(["scene", *HEADINGS], rows)
 
 
 PUBLISHED = (Published("page_speed", ["web"], _page_speed),)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """Run the command.
-
-    Args:
-        argv: command line arguments; those of the process by default.
-    """
+    """Run the command."""
     arguments = command_parser().parse_args(argv)
     if arguments.keep and not arguments.measure:
         raise UserError("keep: there is nothing to keep without --measure")

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from statistics import median
 from time import perf_counter
@@ -26,6 +26,9 @@ SCENES = ("mirror_room", "boxes", "floor", "gallery", "staircase")
 FRAMES = 40
 WARM = 5
 """Frames drawn before timing starts, because a browser recompiles code that runs often."""
+
+HEADINGS = ("frame in Chromium", "natively", "ratio", "frames per second on the page")
+"""Headings of the measurements after the scene's name."""
 
 RUN = """async ([model, source, warm, count]) => {
     const machine = await Machine.start(model), times = [];
@@ -50,15 +53,7 @@ def _native(config: Configuration, scene: str, build: Path) -> Iterator[float]:
 def speed(
     page: Page, site: Path, model: str, config: Configuration, build: Path, console: Console
 ) -> list[dict[str, Any]]:
-    """Measure a model of the page, scene by scene.
-
-    Args:
-        page: browser page, from `browser_page`.
-        site: directory of the written page.
-        model: name of the model on the page.
-        config: configuration of the model.
-        build: directory that holds `model/`.
-        console: console for the progress bar.
+    """Measure a model of the page, scene by scene, in a page from `browser_page`.
 
     Returns:
         For each scene its name, the median milliseconds per frame in the browser and natively, and the frames per
@@ -85,11 +80,15 @@ def speed(
     return rows
 
 
-def speed_table(rows: Sequence[dict[str, Any]]) -> Table:
+def speed_texts(row: Mapping[str, Any]) -> list[str]:
+    """Format a scene's measurements in the order of `HEADINGS`."""
+    browser, native = row["browser_ms"], row["native_ms"]
+    return [f"{browser:.0f} ms", f"{native:.0f} ms", f"{browser / native:.2f}", f"{row['shown']:.1f}"]
+
+
+def speed_table(rows: Sequence[Mapping[str, Any]]) -> Table:
     """Format the measurements as a table, one row per scene."""
-    table = Table("scene", "browser", "native", "ratio", "frames per second shown")
+    table = Table("scene", *HEADINGS)
     for row in rows:
-        ratio = row["browser_ms"] / row["native_ms"]
-        times = (f"{row['browser_ms']:.0f} ms", f"{row['native_ms']:.0f} ms", f"{ratio:.2f}", f"{row['shown']:.1f}")
-        table.add_row(row["scene"], *times)
+        table.add_row(row["scene"], *speed_texts(row))
     return table

@@ -8,8 +8,9 @@ machine runs; `machine.cpp` records the taps in every clock of a group, with `TA
 from __future__ import annotations
 
 from raycaster.configuration import Configuration
+from raycaster.debug.probes import DUT
 from raycaster.debug.probes.engines import description_of
-from raycaster.debug.probes.ray import DUT, Probe
+from raycaster.debug.probes.ray import Probe
 from raycaster.play.machine import TOP
 
 TAP_BITS = 32
@@ -45,12 +46,7 @@ endmodule
 
 
 def tapped_probes(config: Configuration, unit: int) -> list[Probe]:
-    """List the probes brought out of a unit: all that are known before its pixel is shown.
-
-    Args:
-        config: configuration with ray units.
-        unit: number of the unit.
-    """
+    """List the probes brought out of a unit: all that are known before its pixel is shown."""
     return [
         probe
         for probe in description_of(config, unit).probes
@@ -96,9 +92,7 @@ def tap_facts(config: Configuration) -> dict:
         "controls": {name.rpartition(".")[2]: place[name] for name in _controls(config, 0)},
         "probes": [
             {
-                "quantity": probe.quantity,
-                "event": probe.event,
-                "late": probe.late,
+                **{name: getattr(probe, name) for name in ("quantity", "event", "late")},
                 "taps": [place[name] for name in probe.signals],
                 "signed": bool(probe.signed),
                 "colour": probe.colour is True,
@@ -112,15 +106,14 @@ def tap_facts(config: Configuration) -> dict:
 
 def taps_verilog(config: Configuration) -> str:
     """Generate the module that `machine.v` instantiates if TAPS is defined."""
-    cases = []
+    cases, count = [], len(tapped_signals(config, 0))
     for unit in range(config.units):
-        signals = tapped_signals(config, unit)
         signed = {name for probe in tapped_probes(config, unit) if probe.signed for name in probe.signals}
         cases.append(f"    {UNIT_BITS}'d{unit}: begin")
-        for number, name in enumerate(signals):
+        for number, name in enumerate(tapped_signals(config, unit)):
             value = name.replace(f"{DUT}.", f"{TOP}.ray_caster_module_i.", 1)
             # Each assignment stands alone, so that each value is extended according to its own sign.
             extended = f"$signed({value})" if name in signed else value
             cases.append(f"        values[{number * TAP_BITS} +: {TAP_BITS}] = {extended};")
         cases.append("    end")
-    return _TEXT.format(bits=TAP_BITS, unit_bits=UNIT_BITS, count=len(signals), cases="\n".join(cases))
+    return _TEXT.format(bits=TAP_BITS, unit_bits=UNIT_BITS, count=count, cases="\n".join(cases))

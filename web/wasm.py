@@ -35,10 +35,7 @@ WASI = "wasm32-wasi"
 FREESTANDING = "wasm32-freestanding"
 """Target without libraries, which imports nothing."""
 
-_LINKED = {
-    WASI: ("-mexec-model=reactor",),
-    FREESTANDING: ("-nostdlib", "-Wl,--no-entry"),
-}
+_LINKED = {WASI: ("-mexec-model=reactor",), FREESTANDING: ("-nostdlib", "-Wl,--no-entry")}
 """Flags by target, for a program without `main` whose functions are called one by one."""
 
 
@@ -101,13 +98,9 @@ def _link(directory: Path, name: str, target: str, arguments: Sequence[str | Pat
 
 
 def machine_wasm(config: Configuration, *, processor: bool = False, taps: bool = False, build: Path = BUILD) -> Path:
-    """Compile a design, with `machine.cpp`, that a page runs clock by clock.
+    """Compile a design, with `machine.cpp`, that a page runs clock by clock; see `build_machine`.
 
-    Args:
-        config: configuration of the design.
-        processor: as for `build_machine`.
-        taps: True if the page can watch a ray unit, see `taps.py`; not supported with a processor.
-        build: as for `build_machine`.
+    With taps, the page can watch a ray unit, see `taps.py`; this does not support a processor.
 
     Raises:
         UserError: Verilator, the compiler or one of their dependencies is missing, or the compiler failed.

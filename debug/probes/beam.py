@@ -10,48 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
-from raycaster.debug.probes.exact import fraction, hit
-from raycaster.debug.probes.ray import (
-    AXES,
-    COLOURS,
-    DUT,
-    Description,
-    Event,
-    Place,
-    Probe,
-    Ray,
-    Read,
-    Value,
-    channels_of,
-    fields,
-)
-from raycaster.debug.probes.units import (
-    RECT_FIELDS,
-    found,
-    found_colour,
-    monitor_probes,
-    pixel_channels,
-    scene_probes,
-    seen_colour,
-    shown_events,
-    sorted_rect,
-)
+from raycaster.debug.probes import AXES, COLOURS, DUT, fields, numbered
+from raycaster.debug.probes.exact import fraction
+from raycaster.debug.probes.ray import Description, Event, Place, Probe, Ray, Read, Value, channels_of
+from raycaster.debug.probes.units import RECT_FIELDS, monitor_probes, scene_probes, shown_events
 from raycaster.debug.waves import Samples, signed
 from raycaster.engines import beam
 from raycaster.golden.rays import primary_slopes
-from raycaster.rtl.common.records import (
-    Look,
-    Pixel,
-    Reflector,
-    Sight,
-    Walk,
-    Winner,
-    candidate_of,
-    facet_of,
-    fold_of,
-    rect_of,
-    shade_of,
-)
+from raycaster.rtl.common import records
 from raycaster.rtl.common.widths import factor_bits, index_bits, walk_bits
 
 RENDERER = f"{DUT}.beam_renderer_i"
@@ -102,11 +68,6 @@ def way_p(ray: Ray, place: Place) -> Sequence[Value]:
     return products(ray, place.index, ray.of_ray(0, "slopes"))[:1]
 
 
-def walked(ray: Ray, place: Place) -> Sequence[Value]:
-    """The column's ways to the bounds."""
-    return products(ray, place.index, ray.of_ray(0, "slopes"))[2]
-
-
 def mirrored(ray: Ray, place: Place) -> Sequence[Value] | None:
     """Offset that mirrors add to a point, by axis: from the camera to its image."""
     eyes = zip(ray.of_ray(place.bounce, "origins"), ray.scene.camera.position, strict=True)
@@ -119,25 +80,15 @@ def turned(ray: Ray, place: Place) -> Sequence[Value] | None:
     return [int(slope != before) if before else None for slope, before in slopes] if place.bounce else None
 
 
-def last_mirror(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """Axis and plane distance of the mirror that the ray left last."""
-    return met(ray, Place(place.bounce - 1)) if place.bounce else None
-
-
 def met(ray: Ray, place: Place) -> Sequence[Value] | None:
     """Axis and plane distance of the rectangle that a ray hit."""
     winner = ray.winner(place.bounce)
     return (int(ray.rectangles.axes[winner]), distance(ray, winner)) if winner >= 0 else None
 
 
-def numbered(module: str, number: int, count: int) -> str:
-    """Name one of `count` instances of a module."""
-    return f"{module}_i" if count == 1 else f"{module}_{number}_i"
-
-
 def seen_channels(ray: Ray, place: Place) -> Sequence[Value] | None:
     """Channels of the colour that a ray sees; None if the golden model has no expectation."""
-    seen = seen_colour(ray, place)
+    seen = ray.seen_colour(place)
     return channels_of(*seen, CHANNEL_BITS) if seen else None
 
 
@@ -208,7 +159,7 @@ class BeamProbes(Description):
         names = [numbered(block, 3 * (mirrors - 1) + channel, 3 * mirrors) for channel in range(3)]
         return Probe(
             "channels, joined", tuple(f"{BLEND}.{name}.{port}" for name in names), "done" if mixes else "blend",
-            lambda ray, place: pixel_channels(ray, place) if mixes or not place.bounce else None,
+            lambda ray, place: ray.channels(place) if mixes or not place.bounce else None,
             late=0 if mixes else 1, decode=lambda ray, place, *sums: [one >> low for one in sums], parts=COLOURS
         )  # fmt: skip
 
@@ -267,11 +218,12 @@ class BeamProbes(Description):
     def probes(self) -> list[Probe]:
         """Probes in the order in which values depend on each other."""
         config = self.config
-        facet, walk = facet_of(config), Walk(walk_bits(config))
-        sight = (Sight if config.patterns else Winner)(index_bits(config))
+        facet, walk = records.facet_of(config), records.Walk(walk_bits(config))
+        sight = (records.Sight if config.patterns else records.Winner)(index_bits(config))
         plain = [name for name in facet.layout if name not in ("mirror", "kind", "cell", "colour_2")]
         last, passes = beam.rounds(config) - 1, len(self.starts)
-        candidate, fold, reflector = candidate_of(config), fold_of(config), Reflector()
+        candidate, fold, reflector = records.candidate_of(config), records.fold_of(config), records.Reflector()
+        look = records.Look(config.materials, config.patterns)
         rounds = [
             Probe("nearest of some", fields("{beam}", f"{{round_{turn}}}", ("valid", "index"), candidate),
                 f"round {turn}", nearest_of(2 << turn), shown=False)
@@ -282,7 +234,8 @@ class BeamProbes(Description):
                 signed=True, parts=AXES),
             Probe("runs back", fields("{fold}", "fold", [f"back_{axis}" for axis in AXES], fold), "ray", turned,
                 parts=AXES),
-            Probe("last mirror", fields("{fold}", "fold", ("axis", "distance"), fold), "ray", last_mirror, signed=(1,),
+            Probe("last mirror", fields("{fold}", "fold", ("axis", "distance"), fold), "ray",
+                lambda ray, place: met(ray, Place(place.bounce - 1)) if place.bounce else None, signed=(1,),
                 shown=False),
         ]  # fmt: skip
         kept = [
@@ -293,8 +246,8 @@ class BeamProbes(Description):
         ]  # fmt: skip
         return [
             *scene_probes("column", self.config),
-            Probe("rectangle", fields(f"{DUT}.rect_mem_i", "rects_rect", RECT_FIELDS, rect_of(config)), "fetch",
-                sorted_rect, late=2, colour=(6,), shown=False),
+            Probe("rectangle", fields(f"{DUT}.rect_mem_i", "rects_rect", RECT_FIELDS, records.rect_of(config)), "fetch",
+                Ray.sorted_rect, late=2, colour=(6,), shown=False),
             Probe("set up", fields(SETUP, "facet", plain, facet), "load", setup_facet, signed=(2, 3),
                 shown=False),
             Probe("products of the first column", fields(SETUP, "start", walk.layout, walk), "load", setup_start,
@@ -308,22 +261,23 @@ class BeamProbes(Description):
                 lambda ray, place: None if place.bounce else way_p(ray, place), late=1, signed=True),
             Probe("way p", ("{walker}.way_p",), "test",
                 lambda ray, place: way_p(ray, place) if place.bounce else None, signed=True),
-            Probe("bounds p, q", tuple(f"{{walker}}.{name}" for name in BOUNDS), "test", walked, late=1,
-                signed=True),
-            Probe("inside", fields("{tester}", "hit", ("valid",), candidate), "test", hit, late=beam.TESTER_LATENCY),
+            Probe("bounds p, q", tuple(f"{{walker}}.{name}" for name in BOUNDS), "test",
+                lambda ray, place: products(ray, place.index, ray.of_ray(0, "slopes"))[2], late=1, signed=True),
+            Probe("inside", fields("{tester}", "hit", ("valid",), candidate), "test", Ray.hit,
+                late=beam.TESTER_LATENCY),
             Probe("t", fields("{tester}", "hit", ("numerator", "denominator"), candidate), "test", fraction,
                 late=beam.TESTER_LATENCY),
             *rounds,
             Probe("nearest", fields("{beam}", f"{{round_{last}}}", ("valid", "index"), candidate), "winner",
                 nearest_of(0)),
             *(kept if passes > 1 else []),
-            Probe("found", ("{look}.found",), "blend", found),
-            Probe("its colour", fields("{look}", "look", ("colour",), Look(config.materials, config.patterns)), "blend",
-                found_colour, colour=True),
-            Probe("colour seen", fields("{seen}", "shade", COLOURS, shade_of(config)), "blend",
+            Probe("found", ("{look}.found",), "blend", Ray.found),
+            Probe("its colour", fields("{look}", "look", ("colour",), look), "blend",
+                Ray.found_colour, colour=True),
+            Probe("colour seen", fields("{seen}", "shade", COLOURS, records.shade_of(config)), "blend",
                 seen_channels, late=1, parts=COLOURS),
             *([self._joined()] if passes > 1 else []),
-            Probe("pixel", fields(BLEND, "pixel", COLOURS, Pixel(config.colour_bits)), "done", pixel_channels,
+            Probe("pixel", fields(BLEND, "pixel", COLOURS, records.Pixel(config.colour_bits)), "done", Ray.channels,
                 parts=COLOURS),
             *monitor_probes(RENDERER, "shown", VIDEO, config),
         ]  # fmt: skip

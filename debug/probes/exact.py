@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from raycaster.configuration import Configuration
-from raycaster.debug.probes.ray import AXES, Event, Place, Probe, Ray, Value, fields
-from raycaster.debug.probes.units import SIGNS, UnitProbes, slope_signs, surface
-from raycaster.debug.waves import Samples
+from raycaster.debug.probes import AXES, fields
+from raycaster.debug.probes.ray import Place, Probe, Ray, Value
+from raycaster.debug.probes.units import SIGNS, UnitProbes
 from raycaster.output import printable
 from raycaster.rtl.common.records import Signs, mirror_of, surface_of
 from raycaster.scene import Light
@@ -25,9 +25,9 @@ def mirror(ray: Ray, place: Place) -> Sequence[Value]:
     return 1, axis, ray.of_rectangle(left, "numerators")
 
 
-def hit(ray: Ray, place: Place) -> Sequence[Value]:
-    """1 if the rectangle is hit, else 0."""
-    return (int(ray.of_rectangle(place, "hits")),)
+def surface(ray: Ray, rectangle: int) -> Sequence[Value] | None:
+    """A rectangle's axis, plane and colour; None for -1."""
+    return (*ray.plane(Place(0, rectangle))[:2], ray.colour(rectangle)) if rectangle >= 0 else None
 
 
 def fraction(ray: Ray, place: Place) -> Sequence[Value] | None:
@@ -75,17 +75,6 @@ class ExactProbes(UnitProbes):
     def __init__(self, config: Configuration, unit: int):
         super().__init__(config, unit, "exact_control_i", "exact_unit")
 
-    def _tried(self, samples: Samples, tried: list[tuple[int, int]], bounce: int, end: int) -> list[Event]:
-        """Pair rectangles with verdicts, which come in the same order."""
-        begin = tried[0][0] if tried else end
-        strobe = samples.values[f"{self.control}.steps_write_z_buf"]
-        verdicts = (cycle for cycle in range(begin, end) if strobe[cycle])
-        events = [Event("find", cycle, Place(bounce, rectangle)) for cycle, rectangle in tried]
-        return events + [
-            Event("write", cycle, Place(bounce, rectangle))
-            for cycle, (_, rectangle) in zip(verdicts, tried, strict=False)
-        ]
-
     @property
     def probes(self) -> list[Probe]:
         """Probes in the order in which values depend on each other."""
@@ -95,14 +84,13 @@ class ExactProbes(UnitProbes):
         nearest_t = tuple(f"{keeper}.found_{name}" for name in ("distance", "slope"))
         return [
             *self.first_probes(),
-            Probe("eye", fields(memory, "eye", AXES), "ray", lambda ray, place: ray.of_ray(place.bounce, "origins"),
-                late=1, signed=True, parts=AXES),
-            Probe("signs", fields(memory, "signs", SIGNS, Signs()), "ray", slope_signs, late=1, parts=AXES),
+            Probe("eye", fields(memory, "eye", AXES), "ray", Ray.origin, late=1, signed=True, parts=AXES),
+            Probe("signs", fields(memory, "signs", SIGNS, Signs()), "ray", Ray.slope_signs, late=1, parts=AXES),
             Probe("mirror", fields(memory, "mirror", ("active", "axis", "distance"), mirror_of(self.config)), "ray",
                 mirror, late=1, shown=False),
             Probe("offered", fields(self.control, "offered", SURFACE, surface_of(self.config)), "write",
                 lambda ray, place: surface(ray, place.index), colour=(2,), shown=False),
-            Probe("inside", (f"{tester}.hit",), "write", hit),
+            Probe("inside", (f"{tester}.hit",), "write", Ray.hit),
             Probe("t", t, "write", fraction),
             Probe("nearest t", nearest_t, "write",
                 lambda ray, place: fraction(ray, Place(place.bounce, ray.nearest(place))), late=1),

@@ -12,12 +12,12 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
 from typing import Any, SupportsInt
 
 import numpy as np
 
-from raycaster.configuration import CHANNEL_BITS, Configuration
+from raycaster.configuration import CHANNEL_BITS
+from raycaster.debug.probes import DUT, PINS, module_of
 from raycaster.debug.waves import Samples, Waves, signed
 from raycaster.design import Design
 from raycaster.errors import UserError
@@ -26,14 +26,13 @@ from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import shown
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.hdl.records import Record
 from raycaster.scene import BASIS_SCALE, UNTURNED
 
-DUT = "bench.dut"
-AXES = "xyz"
-
-COLOURS = ("red", "green", "blue")
-PINS = ("vga_r", "vga_g", "vga_b")
+VIDEO_SIGNALS = ("x:signed", "y:signed", *(f"{pin}:hex" for pin in PINS), "vga_hs", "vga_vs", "vga_blank_n", "vga_clk")
+BUS_SIGNALS = (
+    *(f"avs_s0_{name}" for name in ("address", "read", "write", "writedata:hex", "byteenable:hex", "readdata:hex")),
+    *("avs_s0_readdatavalid", "avs_s0_waitrequest", "irq"),
+)
 
 ENDS = ("blend", "done")
 """Events after which a ray sees nothing more."""
@@ -50,29 +49,24 @@ Value = Number | str
 
 @dataclass(frozen=True)
 class Place:
-    """A moment of a ray's life."""
+    """A moment of a ray's life: the bounce is 0 for the primary ray, then one more per reflection."""
 
     bounce: int
-    """0 for the primary ray, then one more per reflection."""
-
     rectangle: int | None = None
 
     @property
     def index(self) -> int:
         """Index of the place's rectangle, which must exist."""
-        if self.rectangle is None:
-            raise ValueError("the place has no rectangle")
+        assert self.rectangle is not None
         return self.rectangle
 
 
 @dataclass(frozen=True)
 class Event:
-    """Something that the hardware did."""
+    """Something that the hardware did; the cycle is the index of the sample that has its values."""
 
     kind: str
     cycle: int
-    """Index of the sample that has the values of the event's cycle."""
-
     place: Place
 
 
@@ -82,40 +76,39 @@ Read = Callable[["Ray", Place], Sequence[Value] | None]
 
 @dataclass(frozen=True)
 class Probe:
-    """A quantity: the signals that hold it in the hardware, and the golden model's value."""
+    """A quantity: the signals that hold it in the hardware, and the golden model's value.
+
+    Attributes:
+        quantity: name of the quantity.
+        signals: full names, or patterns that the description completes; a difference is blamed on the module with the
+            signal.
+        event: kind of event after which the signals hold the value.
+        golden: the golden model's value.
+        late: cycles from the event until the signals hold the value.
+        decode: function of the ray, the place and the samples that returns the values; None if the samples are the
+            values.
+        signed: True if the signals are in two's complement, or the indices of those that are.
+        true: value without any rounding, if rounding can change it.
+        scale: True if the values are in units of 2^-F.
+        colour: True if the values are colours, or the indices of those that are.
+        parts: names of the values, if the quantity does not name them.
+        module: module that a difference is blamed on, if not the one that contains the signal.
+        shown: True if the table shows the value even when it is right.
+    """
 
     quantity: str
     signals: tuple[str, ...]
-    """Full names, or patterns that the description completes; a difference is blamed on the module with the signal."""
-
     event: str
     golden: Read
     late: int = 0
-    """Cycles from the event until the signals hold the value."""
-
     decode: Callable[..., Sequence[Value]] | None = None
-    """Function of the ray, the place and the samples that returns the values; None if the samples are the values."""
-
     signed: bool | tuple[int, ...] = False
-    """True if the signals are in two's complement, or the indices of those that are."""
-
     true: Callable[[Ray, Place], Sequence[Number]] | None = None
-    """Value without any rounding, if rounding can change it."""
-
     scale: bool = False
-    """Values are in units of 2^-F."""
-
     colour: bool | tuple[int, ...] = False
-    """True if the values are colours, or the indices of those that are."""
-
     parts: Sequence[str] = ()
-    """Names of the values, if the quantity does not name them."""
-
     module: str = ""
-    """Module that a difference is blamed on, if not the one that contains the signal."""
-
     shown: bool = True
-    """True if the table shows the value even when it is right."""
 
     def is_signed(self, number: int) -> bool:
         """True if the signal with this index is in two's complement."""
@@ -128,14 +121,12 @@ class Probe:
 
 @dataclass(frozen=True)
 class Reading:
-    """A probe's values at one event, from the golden model and from the hardware."""
+    """A probe's values at one event, from the golden model and from the hardware; time_ns is the start of the cycle."""
 
     probe: Probe
     place: Place
     cycle: int
     time_ns: float
-    """Start of the cycle that has the values."""
-
     golden: tuple[Value, ...]
     found: tuple[Value, ...]
 
@@ -158,32 +149,29 @@ class Reading:
 
 
 class Description:
-    """Base class of the engines' descriptions."""
+    """Base class of the engines' descriptions.
+
+    Attributes:
+        probes: probes in the order in which values depend on each other.
+        event_names: each kind of event's name, and the signal that shows it.
+        video: instance of the video generator.
+        states: signals that a viewer shows, although they are neither events nor values.
+        diagrams: signals that only the manual's timing diagrams show.
+    """
 
     probes: Sequence[Probe]
-    """Probes in the order in which values depend on each other."""
-
     event_names: Mapping[str, tuple[str, str]]
-    """Each kind of event's name, and the signal that shows it."""
-
     video: str
-    """Instance of the video generator."""
-
     states: Sequence[str] = ()
-    """Signals that a viewer shows, although they are neither events nor values."""
-
     diagrams: Sequence[str] = ()
-    """Signals that only the manual's timing diagrams show."""
 
     def signals(self, name: str) -> tuple[str, ...]:
         """Return the full names of the signals of a quantity, or of the control's only signal of this name."""
         for probe in self.probes:
             if probe.quantity == name:
                 return probe.signals
-        found = {signal for signal in (*self.controls(), *self.diagrams) if signal.endswith(f".{name}")}
-        if len(found) != 1:
-            raise ValueError(f"{name}: expected a quantity or a signal, got {sorted(found)}")
-        return tuple(found)
+        (found,) = {signal for signal in (*self.controls(), *self.diagrams) if signal.endswith(f".{name}")}
+        return (found,)
 
     def events(self, samples: Samples, ray: Ray) -> list[Event]:
         """List what the hardware did for the pixel."""
@@ -204,23 +192,22 @@ class Description:
     def groups(self, ray: Ray) -> Mapping[str, Sequence[str]]:
         """Group the signals for a viewer, by group name: full names, with `:signed` or `:hex` after those that are not
         unsigned numbers or single bits. The only rectangle is the one that the pixel shows."""
-        place, values = Place(0, max(0, ray.winner(0))), {}
+        place, values = Place(0, max(0, ray.winner(0))), []
         for probe in self.probes:
             for number, signal in enumerate(probe.signals):
                 kind = ":hex" if probe.is_colour(number) else ":signed" if probe.is_signed(number) else ""
-                values.setdefault(self.named(signal, place, ray), kind)
-        video = {"x": ":signed", "y": ":signed", **dict.fromkeys(PINS, ":hex")}
-        video |= dict.fromkeys(("vga_hs", "vga_vs", "vga_blank_n", "vga_clk"), "")
-        video = {f"{self.video}.{name}": kind for name, kind in video.items()}
-        words = {"address": "", "read": "", "write": "", "writedata": ":hex", "byteenable": ":hex", "readdata": ":hex"}
-        bus = {f"{DUT}.avs_s0_{name}": kind for name, kind in words.items()}
-        bus |= {f"{DUT}.avs_s0_{name}": "" for name in ("readdatavalid", "waitrequest")} | {f"{DUT}.irq": ""}
-        control = dict.fromkeys(["bench.clk", *self.states, *self.controls()], "")
-        groups, listed = {}, {}
-        for name, signals in {"video": video, "bus": bus, "control": control, "values": values}.items():
-            groups[name] = [signal + kind for signal, kind in signals.items() if signal not in listed]
-            listed |= signals
-        return {name: groups[name] for name in ("control", "values", "video", "bus")}
+                values.append(self.named(signal, place, ray) + kind)
+        listed: dict[str, tuple[str, str]] = {}
+        for group, signals in {
+            "video": [f"{self.video}.{name}" for name in VIDEO_SIGNALS],
+            "bus": [f"{DUT}.{name}" for name in BUS_SIGNALS],
+            "control": ["bench.clk", *self.states, *self.controls()],
+            "values": values,
+        }.items():
+            for signal in signals:
+                listed.setdefault(re.sub(":[a-z]+$", "", signal), (group, signal))
+        order = ("control", "values", "video", "bus")
+        return {name: [signal for group, signal in listed.values() if group == name] for name in order}
 
 
 class Ray:
@@ -242,6 +229,9 @@ class Ray:
                 f"got {column},{row}"
             )
         self.row, self.column = row, column
+        self.offset, self.unit = divmod(column, self.config.units)
+        """Group that the pixel is in, and the ray unit that computes it; see the seed engine's ray_generator."""
+        self.reflections = design.reflections
         self.rectangles = Rectangles.of_scene(self.scene)
         basis = self.scene.camera.basis
         slopes = primary_slopes(screen, basis)[row, column][None]
@@ -253,21 +243,9 @@ class Ray:
             model.trace(*arguments, light=self.scene.light, keep=True)
             for model in (ExactModel(), model_of(self.config))
         )
-
-    @property
-    def reflections(self) -> int:
-        """Number of reflections with which the scene is shown."""
-        return self.design.reflections
-
-    @property
-    def unit(self) -> int:
-        """Ray unit that computes the pixel; see the seed engine's ray_generator."""
-        return self.column % self.config.units
-
-    @property
-    def offset(self) -> int:
-        """Group that the pixel is in."""
-        return self.column // self.config.units
+        bits, colours = self.config.colour_bits, self.golden.colours[0].reshape(1, 1, 3)
+        self.pixel = packed(shown(colours, self.config)[0, 0] >> (CHANNEL_BITS - bits), bits)
+        """The pixel's colour, with the design's number of bits."""
 
     def alive(self, bounce: int) -> bool:
         """True if there is such a ray: every ray before it hit something."""
@@ -301,13 +279,6 @@ class Ray:
         channels = self.scene.background if rectangle < 0 else self.rectangles.colours[rectangle]
         return packed(channels, CHANNEL_BITS)
 
-    @cached_property
-    def pixel(self) -> int:
-        """The pixel's colour, with the design's number of bits."""
-        bits = self.config.colour_bits
-        picture = shown(self.golden.colours[0].reshape(1, 1, 3), self.config)[0, 0]
-        return packed(picture >> (CHANNEL_BITS - bits), bits)
-
     def plane(self, place: Place) -> tuple[int, int, tuple[int, ...]]:
         """Return a rectangle's axis, its plane's coordinate, and its bounds as the hardware sorts them."""
         axis = int(self.rectangles.axes[place.index])
@@ -315,10 +286,46 @@ class Ray:
         u, v = OTHER_AXES[axis]
         return axis, int(low[axis]), tuple(int(value) for value in (low[u], high[u], low[v], high[v]))
 
+    def hit(self, place: Place) -> Sequence[Value]:
+        """Return 1 if the rectangle is hit, else 0."""
+        return (int(self.of_rectangle(place, "hits")),)
+
+    def origin(self, place: Place) -> Sequence[Value]:
+        """Return the start of a ray."""
+        return self.of_ray(place.bounce, "origins")
+
+    def sorted_rect(self, place: Place) -> Sequence[Value]:
+        """Return a rectangle's fields as the hardware sorts them."""
+        axis, position, bounds = self.plane(place)
+        return axis, position, *bounds, self.colour(place.index)
+
+    def slope_signs(self, place: Place) -> Sequence[Value]:
+        """Return the signs of the slope's components, 1 if negative; None for a component that is 0."""
+        return [None if slope == 0 else int(slope < 0) for slope in self.of_ray(place.bounce, "slopes")]
+
+    def found(self, place: Place) -> Sequence[Value] | None:
+        """Return 1 if a ray hit anything, else 0; None for a ray after a miss."""
+        return (int(self.winner(place.bounce) >= 0),) if self.alive(place.bounce) else None
+
+    def found_colour(self, place: Place) -> Sequence[Value] | None:
+        """Return the colour of the rectangle that a ray hit; None for a miss."""
+        winner = self.winner(place.bounce)
+        return (self.colour(winner),) if winner >= 0 else None
+
+    def seen_colour(self, place: Place) -> tuple[int] | None:
+        """Return the colour that a ray sees, background included; None for a ray after a surface without a mirror."""
+        if self.config.materials and not self.alive(place.bounce):
+            return None
+        return (int.from_bytes(bytes(self.golden.seen[place.bounce][0])),)
+
+    def channels(self, place: Place) -> Sequence[Value]:
+        """Return the pixel's three channels."""
+        return channels_of(self.pixel, self.config.colour_bits)
+
     def true_origin(self, bounce: int) -> tuple[Fraction, ...]:
         """Compute where a ray starts without rounding; after a miss the result means nothing."""
         if bounce == 0:
-            return tuple(Fraction(coordinate) for coordinate in self.scene.camera.position)
+            return tuple(map(Fraction, self.scene.camera.position))
         return self._true_point(self.true.points[bounce - 1][0], self.true.denominators[bounce - 1][0])
 
     def true_hit(self, place: Place) -> tuple[Fraction, ...] | None:
@@ -346,38 +353,6 @@ def channels_of(colour: int, bits: int) -> tuple[int, int, int]:
     return colour >> 2 * bits & mask, colour >> bits & mask, colour & mask
 
 
-def fields(scope: str, group: str, names: Iterable[str], record: Record | None = None) -> tuple[str, ...]:
-    """Name the signals of an interface's attributes.
-
-    Args:
-        scope: the instance.
-        group: the interface or record in it.
-        names: the attributes, with a viewer's number format after a colon where it matters.
-        record: a record with the group's layout, if the group is one: its fields are named as bits of its word, which
-            exist whether or not the instance reads the field.
-    """
-    if record is None:
-        return tuple(f"{scope}.{group}_{name}" for name in names)
-    parts = [name.partition(":") for name in names]
-    ranges = [record.slice(field) for field, _, _ in parts]
-    return tuple(
-        f"{scope}.{group}_word[{high}:{low}]{colon}{kind}"
-        for (high, low), (_, colon, kind) in zip(ranges, parts, strict=True)
-    )
-
-
-def module_of(signal: str) -> str:
-    """Return the module that contains a signal, from the name of its instance."""
-    instance = signal.split(".")[-2]
-    match = re.fullmatch(r"(\w+?)(?:_\d+)?_i", instance)
-    return match[1] if match else {"dut": "ray_caster_module"}.get(instance, instance)
-
-
-def unit_name(module: str, config: Configuration, unit: int) -> str:
-    """Name a unit's instance of a module that each unit has."""
-    return f"{module}_i" if config.units == 1 else f"{module}_{unit}_i"
-
-
 def read(waves: Waves, description: Description, ray: Ray) -> list[Reading]:
     """Read everything that the waveform has of a pixel's life, in the order in which it happened.
 
@@ -389,57 +364,36 @@ def read(waves: Waves, description: Description, ray: Ray) -> list[Reading]:
     samples = waves.sample(description.controls())
     if not samples.times_ns:
         raise UserError(f"{waves.path}: the clock never rises")
-    events = description.events(samples, ray)
-    found, probes = [], description.probes
+    events, probes, found = description.events(samples, ray), description.probes, []
     for event in events:
         for probe in probes:
             if probe.event != event.kind or not (ray.alive(event.place.bounce) or event.kind in OF_LOST_RAYS):
                 continue
-            golden = tuple(probe.golden(ray, event.place) or ())
-            if any(value is not None for value in golden):
+            golden, cycle = tuple(probe.golden(ray, event.place) or ()), event.cycle + probe.late
+            if any(value is not None for value in golden) and cycle < len(samples.times_ns):
                 names = tuple(description.named(signal, event.place, ray) for signal in probe.signals)
-                found.append((replace(probe, signals=names), event, golden))
-    samples = waves.sample(sorted({signal for probe, _, _ in found for signal in probe.signals}))
-    readings = [
-        _reading(waves, samples, probe, event, golden, ray)
-        for probe, event, golden in found
-        if event.cycle + probe.late < len(samples.times_ns)
-    ]
-    omissions = []
+                found.append((replace(probe, signals=names), event.place, cycle, golden))
+    readings = []
     happened = {(event.kind, event.place) for event in events}
     for kind, place in description.expected(ray):
         if (kind, place) not in happened:
             ends = (event.cycle for event in events if event.kind in ENDS and event.place.bounce >= place.bounce)
             cycle = min(ends, default=len(samples.times_ns) - 1)
             quantity, signal = description.event_names[kind]
-            probe = Probe(quantity, (signal,), kind, _happens)
-            omissions.append(Reading(probe, place, cycle, _begin(samples, cycle), ("yes",), ("no",)))
+            probe = Probe(quantity, (signal,), kind, lambda ray, place: ("yes",))
+            readings.append(Reading(probe, place, cycle, samples.begin_ns(cycle), ("yes",), ("no",)))
+    values = waves.sample({name for probe, *_ in found for name in probe.signals}).values
+    for probe, place, cycle, golden in found:
+        seen: Sequence[Value] = [
+            signed(values[name][cycle], waves.width(name)) if probe.is_signed(number) else values[name][cycle]
+            for number, name in enumerate(probe.signals)
+        ]
+        if probe.decode:
+            seen = len(golden) * [None] if None in seen else probe.decode(ray, place, *seen)
+        readings.append(Reading(probe, place, cycle, samples.begin_ns(cycle), golden, tuple(seen)))
     # Within a cycle, sorting keeps the description's order, in which values depend on each other. Omissions come
     # first, as these events should have happened earlier.
-    return sorted(omissions + readings, key=lambda reading: reading.cycle)
-
-
-def _happens(ray: Ray, place: Place) -> Sequence[Value]:
-    return ("yes",)
-
-
-def _reading(
-    waves: Waves, samples: Samples, probe: Probe, event: Event, golden: tuple[Value, ...], ray: Ray
-) -> Reading:
-    cycle = event.cycle + probe.late
-    raw = [
-        signed(samples.values[name][cycle], waves.width(name)) if probe.is_signed(i) else samples.values[name][cycle]
-        for i, name in enumerate(probe.signals)
-    ]
-    found: tuple[Value, ...] = tuple(raw)
-    if probe.decode:
-        found = tuple(probe.decode(ray, event.place, *raw)) if None not in raw else len(golden) * (None,)
-    return Reading(probe, event.place, cycle, _begin(samples, cycle), golden, found)
-
-
-def _begin(samples: Samples, cycle: int) -> float:
-    """Return the start of a cycle, where a viewer shows the cycle's values."""
-    return samples.times_ns[max(0, cycle - 1)]
+    return sorted(readings, key=lambda reading: reading.cycle)
 
 
 def first_difference(readings: Iterable[Reading]) -> Reading | None:

@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
-from raycaster.debug.probes.ray import AXES, Event, Number, Place, Probe, Ray, Read, Value, fields, packed
-from raycaster.debug.probes.units import RECT_FIELDS, SIGNS, UnitProbes, slope_signs, sorted_rect
-from raycaster.debug.waves import Samples
+from raycaster.debug.probes import AXES, fields
+from raycaster.debug.probes.ray import Number, Place, Probe, Ray, Read, Value, packed
+from raycaster.debug.probes.units import RECT_FIELDS, SIGNS, UnitProbes
 from raycaster.golden.colour import hit_colours
 from raycaster.golden.world import OTHER_AXES
 from raycaster.rtl.common.records import Origin, rect_of
@@ -63,11 +63,6 @@ def of_reflected(read: Read) -> Read:
     return lambda ray, place: read(ray, place) if place.bounce else None
 
 
-def origin(ray: Ray, place: Place) -> Sequence[Value]:
-    """Start of the ray."""
-    return ray.of_ray(place.bounce, "origins")
-
-
 def products(ray: Ray, place: Place) -> Sequence[Value]:
     """Dividends for u and v: magnitudes of the slope times n."""
     slopes, n = ray.of_ray(place.bounce, "slopes"), ray.of_rectangle(place, "numerators")
@@ -106,36 +101,10 @@ def true_inside(ray: Ray, place: Place) -> Sequence[Number]:
 class SeedProbes(UnitProbes):
     """The seed engine's description; see `raycaster.debug.probes.ray.Description`."""
 
+    steps: Mapping[str, str] = {"load": "load_divider", "store": "store_quotient", "write": "write_z_buf"}
+
     def __init__(self, config: Configuration, unit: int):
         super().__init__(config, unit, "ray_control_i", "ray_unit")
-
-    def controls(self) -> Iterable[str]:
-        """List the signals that `events` reads."""
-        steps = [f"{self.control}.steps_{name}" for name in ("load_divider", "store_quotient")]
-        return [*super().controls(), *steps, f"{self.sequencer}.early_out"]
-
-    def _tried(self, samples: Samples, tried: list[tuple[int, int]], bounce: int, end: int) -> list[Event]:
-        """Follow each rectangle through the divider, in which one may wait while another is loaded."""
-        values = samples.values
-        started, dividing, finishing = [], [], []
-        starts, events = dict(tried), []
-
-        def note(kind: str, cycle: int, rectangle: int) -> int:
-            events.append(Event(kind, cycle, Place(bounce, rectangle)))
-            return rectangle
-
-        for cycle in range(min(starts, default=end), end):
-            if cycle in starts:
-                started.append(note("find", cycle, starts[cycle]))
-            if values[f"{self.control}.steps_write_z_buf"][cycle] and finishing:
-                note("write", cycle, finishing.pop(0))
-            if values[f"{self.control}.steps_store_quotient"][cycle] and dividing:
-                finishing.append(note("store", cycle, dividing.pop(0)))
-            if values[f"{self.control}.steps_load_divider"][cycle] and started:
-                dividing.append(note("load", cycle, started.pop(0)))
-            if values[f"{self.sequencer}.early_out"][cycle] and dividing:
-                note("early out", cycle, dividing.pop())
-        return events
 
     def expected(self, ray: Ray) -> Iterable[tuple[str, Place]]:
         """List the events that must happen; with culling, a rectangle that is not hit may end before its verdict."""
@@ -156,25 +125,24 @@ class SeedProbes(UnitProbes):
         kept = (f"{buffer}.found_axis", f"{buffer}.found_colour")
         return [
             *self.first_probes(),
-            Probe("reflected origin", fields(memory, "reflected", AXES, ray), "ray", of_reflected(origin), late=1,
+            Probe("reflected origin", fields(memory, "reflected", AXES, ray), "ray", of_reflected(Ray.origin), late=1,
                 scale=True, shown=False, parts=AXES),
-            Probe("reflected signs", fields(memory, "reflected", SIGNS, ray), "ray", of_reflected(slope_signs), late=1,
-                shown=False, parts=AXES),
-            Probe("origin", fields(self.unit, "ray", AXES, ray), "ray", origin, late=1, scale=True,
+            Probe("reflected signs", fields(memory, "reflected", SIGNS, ray), "ray",
+                of_reflected(Ray.slope_signs), late=1, shown=False, parts=AXES),
+            Probe("origin", fields(self.unit, "ray", AXES, ray), "ray", Ray.origin, late=1, scale=True,
                 true=lambda ray, place: ray.true_origin(place.bounce), parts=AXES),
-            Probe("signs", fields(self.unit, "ray", SIGNS, ray), "ray", slope_signs, late=1, parts=AXES),
+            Probe("signs", fields(self.unit, "ray", SIGNS, ray), "ray", Ray.slope_signs, late=1, parts=AXES),
             Probe("towards the plane", of_helpers("towards"), "find", towards, late=1, shown=False),
             Probe("product", of_helpers("product"), "load", products, shown=False),
             Probe("rectangle at the end", fields(self.control, "offered", RECT_FIELDS, rect_of(self.config)), "store",
-                sorted_rect, late=1, colour=(6,), shown=False),
+                Ray.sorted_rect, late=1, colour=(6,), shown=False),
             Probe("quotient u, v", of_helpers("divider_i.quotient"), "store", of_rectangle("quotients", "valid"),
                 late=1, scale=True),
             Probe("valid", of_helpers("valid"), "store", lambda ray, place: ray.of_rectangle(place, "valid"), late=1,
                 shown=False),
             Probe("hit point u, v", of_helpers("value"), "write", coordinates, signed=True, true=true_coordinates,
                 scale=True),
-            Probe("inside", (f"{finder}.hit",), "write", lambda ray, place: (int(ray.of_rectangle(place, "hits")),),
-                true=true_inside),
+            Probe("inside", (f"{finder}.hit",), "write", Ray.hit, true=true_inside),
             Probe("depth", (f"{finder}.depth",), "write", of_rectangle("depths", "hits"), true=true_depth, scale=True),
             Probe("point", fields(finder, "point", AXES, point), "write", of_rectangle("points", "hits"), scale=True,
                 shown=False, parts=AXES),

@@ -3,25 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
 
 from raycaster.configuration import Configuration
-from raycaster.debug.probes.ray import (
-    AXES,
-    COLOURS,
-    DUT,
-    PINS,
-    Description,
-    Event,
-    Place,
-    Probe,
-    Ray,
-    Read,
-    Value,
-    channels_of,
-    fields,
-    unit_name,
-)
+from raycaster.debug.probes import AXES, COLOURS, DUT, PINS, fields, numbered
+from raycaster.debug.probes.ray import Description, Event, Place, Probe, Ray, Read
 from raycaster.debug.waves import Samples, signed
 from raycaster.rtl.common.records import Pixel, Signs, camera_of, rect_of
 
@@ -29,58 +16,6 @@ RENDERER = f"{DUT}.ray_caster_renderer_i"
 RECT_FIELDS = ("axis", "position", "u_low", "u_high", "v_low", "v_high", "colour")
 SIGNS = ("dx", "dy", "dz")
 VIDEO = f"{RENDERER}.video_generator_i"
-
-
-def sorted_rect(ray: Ray, place: Place) -> Sequence[Value]:
-    """A rectangle's fields as the hardware sorts them."""
-    axis, position, bounds = ray.plane(place)
-    return axis, position, *bounds, ray.colour(place.index)
-
-
-def surface(ray: Ray, rectangle: int) -> Sequence[Value] | None:
-    """A rectangle's axis, plane and colour; None for -1."""
-    if rectangle < 0:
-        return None
-    axis, position, _ = ray.plane(Place(0, rectangle))
-    return axis, position, ray.colour(rectangle)
-
-
-def slope_signs(ray: Ray, place: Place) -> Sequence[Value]:
-    """Signs of the slope's components, 1 if negative; None for a component that is 0."""
-    return [None if slope == 0 else int(slope < 0) for slope in ray.of_ray(place.bounce, "slopes")]
-
-
-def ended_before(ray: Ray, place: Place) -> Sequence[Value]:
-    """1 if there is no such ray, else 0."""
-    return (int(not ray.alive(place.bounce)),)
-
-
-def found(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """1 if a ray hit anything, else 0; None for a ray after a miss."""
-    return (int(ray.winner(place.bounce) >= 0),) if ray.alive(place.bounce) else None
-
-
-def found_colour(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """Colour of the rectangle that a ray hit; None for a miss."""
-    winner = ray.winner(place.bounce)
-    return (ray.colour(winner),) if winner >= 0 else None
-
-
-def seen_colour(ray: Ray, place: Place) -> tuple[int] | None:
-    """Colour that a ray sees, background included; None for a ray after a surface that does not mirror."""
-    if ray.config.materials and not ray.alive(place.bounce):
-        return None
-    return (int.from_bytes(bytes(ray.golden.seen[place.bounce][0])),)
-
-
-def pixel(ray: Ray, place: Place) -> Sequence[Value]:
-    """The pixel's colour."""
-    return (ray.pixel,)
-
-
-def pixel_channels(ray: Ray, place: Place) -> Sequence[Value]:
-    """The pixel's three channels."""
-    return channels_of(ray.pixel, ray.config.colour_bits)
 
 
 def hit_mask(ray: Ray, place: Place) -> Sequence[int]:
@@ -103,8 +38,8 @@ def monitor_probes(renderer: str, port: str, video: str, config: Configuration) 
     """Probes of the pixel's last steps."""
     channels = fields(renderer, port, COLOURS, Pixel(config.colour_bits))
     return [
-        Probe("pixel to the monitor", channels, "shown", pixel_channels, parts=COLOURS),
-        Probe("pins", tuple(f"{video}.{name}" for name in PINS), "shown", pixel_channels, late=1, parts=COLOURS),
+        Probe("pixel to the monitor", channels, "shown", Ray.channels, parts=COLOURS),
+        Probe("pins", tuple(f"{video}.{name}" for name in PINS), "shown", Ray.channels, late=1, parts=COLOURS),
     ]
 
 
@@ -125,6 +60,8 @@ class UnitProbes(Description):
     """The part of a description that does not depend on how a unit computes."""
 
     video = VIDEO
+    steps: Mapping[str, str] = {"write": "write_z_buf"}
+    """Steps of the control for each tested rectangle, in order, by kind of event."""
 
     def __init__(self, config: Configuration, unit: int, control: str, unit_module: str):
         """Name the signals.
@@ -136,12 +73,11 @@ class UnitProbes(Description):
             unit_module: the name of the unit's module.
         """
         self.config = config
-        self.number = unit
         self.caster = f"{RENDERER}.ray_caster_i"
         self.control = f"{self.caster}.{control}"
         self.sequencer = f"{self.control}.ray_sequencer_i"
-        self.unit = f"{self.caster}.{unit_name(unit_module, config, unit)}"
-        self.generator = "turned_generator" if config.turn else "ray_generator"
+        self.unit = f"{self.caster}.{numbered(unit_module, unit, config.units)}"
+        self.buffer = f"{RENDERER}.{numbered('line_buffer', unit, config.units)}"
         self.states = [f"{self.sequencer}.{name}" for name in ("state", "bounce")]
         steps = f"{self.sequencer}.steps"
         names = ("enable", "restart", "reset_delay", "reset_ray_caster", "line_buf_sel", "picture_run")
@@ -149,7 +85,7 @@ class UnitProbes(Description):
             *(f"{RENDERER}.{name}" for name in names),
             *(f"{VIDEO}.scan_{name}" for name in ("start_screen", "start_row")),
             *(f"{steps}_{name}" for name in ("initial_ray", "reset_colour", "reset_z_buf")),
-            f"{RENDERER}.{unit_name('line_buffer', config, unit)}.write_address",
+            f"{self.buffer}.write_address",
         ]
         self.event_names = {
             "start": ("group started", f"{steps}_screen_to_ray"),
@@ -168,7 +104,8 @@ class UnitProbes(Description):
             *(f"{RENDERER}.place_{name}" for name in ("row", "column_offset")),
             *(f"{self.sequencer}.{name}" for name in ("done", "rects_fetch", "rects_index")),
             *(f"{self.sequencer}.steps_{name}" for name in steps),
-            f"{self.control}.steps_write_z_buf",
+            *(f"{self.control}.steps_{name}" for name in self.steps.values()),
+            *[f"{self.sequencer}.early_out"] * ("load" in self.steps),
             *[f"{self.control}.from_light"] * self.config.light,
             *(f"{VIDEO}.{name}" for name in ("x", "y", "pixel_end")),
         ]
@@ -199,13 +136,13 @@ class UnitProbes(Description):
             return shown
         events = [Event("start", start, Place(0)), Event("ray", start, Place(0))]
         bounce, at_hand = 0, None
-        tried: list[tuple[int, int]] = []
+        tried: dict[int, int] = {}
         # Tests of the shadow ray are not tests of the unit's own ray.
         from_light = values.get(f"{self.control}.from_light", [0] * len(samples.times_ns))
         for cycle in range(start, len(samples.times_ns)):
             ends = values[f"{step}_add_colour"][cycle] == 1
             if values[f"{step}_find_intersection"][cycle] and at_hand is not None and not from_light[cycle]:
-                tried.append((cycle, at_hand))
+                tried[cycle] = at_hand
             if values[f"{self.sequencer}.rects_fetch"][cycle]:
                 at_hand = values[f"{self.sequencer}.rects_index"][cycle]
                 # The next ray's first rectangle is fetched in the cycle in which a ray ends.
@@ -215,7 +152,7 @@ class UnitProbes(Description):
                 events.append(Event("blend", cycle, Place(bounce)))
                 if values[f"{step}_store_ray"][cycle]:
                     events.append(Event("ray", cycle, Place(bounce + 1)))
-                bounce, tried = bounce + 1, []
+                bounce, tried = bounce + 1, {}
             if values[f"{self.sequencer}.done"][cycle]:
                 events.append(Event("done", cycle, Place(max(0, bounce - 1))))
                 break
@@ -228,14 +165,25 @@ class UnitProbes(Description):
         found = {event.place for event in known if event.kind == "find"}
         return [event for event in known if event.kind != "fetch" or event.place in found] + shown
 
-    def _tried(self, samples: Samples, tried: list[tuple[int, int]], bounce: int, end: int) -> list[Event]:
-        """List the events of the rectangles that were tested for a ray, in their order."""
-        raise NotImplementedError
+    def _tried(self, samples: Samples, starts: Mapping[int, int], bounce: int, end: int) -> Iterable[Event]:
+        """Follow the rectangles that were tested for a ray through the unit's steps; one may wait for another."""
+        waiting: dict[str, list[int]] = {kind: [] for kind in ("find", *self.steps)}
+        early_out = samples.values.get(f"{self.sequencer}.early_out")
+        for cycle in range(min(starts, default=end), end):
+            moved = [("find", starts[cycle])] if cycle in starts else []
+            waiting["find"] += [rectangle for _, rectangle in moved]
+            for before, kind in reversed([*pairwise(waiting)]):
+                if samples.values[f"{self.control}.steps_{self.steps[kind]}"][cycle] and waiting[before]:
+                    waiting[kind].append(waiting[before].pop(0))
+                    moved.append((kind, waiting[kind][-1]))
+            if early_out and early_out[cycle] and waiting["load"]:
+                waiting["load"].pop()
+            yield from (Event(kind, cycle, Place(bounce, rectangle)) for kind, rectangle in moved)
 
     def first_probes(self) -> list[Probe]:
         """Probes from the scene's memories to the primary ray."""
-        rects, generator = f"{DUT}.rect_mem_i", f"{self.unit}.{self.generator}_i"
-        layout = rect_of(self.config)
+        rects = f"{DUT}.rect_mem_i"
+        generator = f"{self.unit}.{'turned_generator' if self.config.turn else 'ray_generator'}_i"
         culling = Probe(
             # The mask is don't care for rectangles that the scene does not have.
             "rectangles that may be hit", (f"{self.sequencer}.wanted",), "start", hit_mask,
@@ -247,16 +195,16 @@ class UnitProbes(Description):
                 lambda ray, _: ((1 << len(ray.rectangles)) - 1,), shown=False),
             Probe("slope, magnitudes", fields(generator, "slope", SIGNS), "start",
                 lambda ray, _: [abs(slope) for slope in ray.of_ray(0, "slopes")], late=1, parts=AXES),
-            Probe("slope, signs", fields(generator, "initial_signs", SIGNS, Signs()), "start", slope_signs, late=1,
+            Probe("slope, signs", fields(generator, "initial_signs", SIGNS, Signs()), "start", Ray.slope_signs, late=1,
                 parts=AXES),
             Probe("comes from the camera", (f"{self.sequencer}.steps_initial_ray",), "ray",
                 lambda _, place: (int(place.bounce == 0),), late=1, shown=False),
-            Probe("rectangle", fields(rects, "rects_rect", RECT_FIELDS, layout), "fetch", sorted_rect, late=1,
-                colour=(6,), shown=False),
+            Probe("rectangle", fields(rects, "rects_rect", RECT_FIELDS, rect_of(self.config)), "fetch",
+                Ray.sorted_rect, late=1, colour=(6,), shown=False),
             *([culling] if self.config.culling else []),
         ]  # fmt: skip
 
-    def last_probes(self, kept_colour: str, golden_colour: Read = found_colour) -> list[Probe]:
+    def last_probes(self, kept_colour: str, golden_colour: Read = Ray.found_colour) -> list[Probe]:
         """Probes from a ray's found rectangle to the pins.
 
         Args:
@@ -264,17 +212,21 @@ class UnitProbes(Description):
             golden_colour: reads the golden model's value of it.
         """
         combiner, bits = f"{self.unit}.colour_combiner_i", 3 * self.config.colour_bits
-        buffer = f"{RENDERER}.{unit_name('line_buffer', self.config, self.number)}"
         channels = tuple(f"{combiner}.colour_sum_{number}_i.blended" for number in range(3))
+
+        def pixel(ray: Ray, _: Place) -> Sequence[int]:
+            return (ray.pixel,)
+
         return [
-            Probe("ended before", (f"{combiner}.missed",), "blend", ended_before, shown=False),
-            Probe("found", (kept_colour.rpartition(".")[0] + ".found",), "blend", found),
+            Probe("ended before", (f"{combiner}.missed",), "blend",
+                lambda ray, place: (int(not ray.alive(place.bounce)),), shown=False),
+            Probe("found", (kept_colour.rpartition(".")[0] + ".found",), "blend", Ray.found),
             Probe("its colour", (kept_colour,), "blend", golden_colour, colour=True),
-            Probe("colour seen", (f"{combiner}.ray_colour_word",), "blend", seen_colour, colour=True),
-            Probe("means of the channels", channels, "done", pixel_channels, parts=COLOURS),
+            Probe("colour seen", (f"{combiner}.ray_colour_word",), "blend", Ray.seen_colour, colour=True),
+            Probe("means of the channels", channels, "done", Ray.channels, parts=COLOURS),
             Probe("pixel", (f"{combiner}.pixel_word",), "done", pixel, colour=True),
             Probe("pixel among all", (f"{self.caster}.pixels",), "done", pixel, colour=True,
                 decode=lambda ray, _, pixels: (pixels >> ray.unit * bits & (1 << bits) - 1,)),
-            Probe("pixel from the line buffer", (f"{buffer}.pixel_out",), "shown", pixel, colour=True),
+            Probe("pixel from the line buffer", (f"{self.buffer}.pixel_out",), "shown", pixel, colour=True),
             *monitor_probes(RENDERER, "pixel", VIDEO, self.config),
         ]  # fmt: skip

@@ -21,7 +21,7 @@ from conftest import ROOT
 from raycaster.configuration import LOOKS
 from raycaster.scene import Camera, Scene, SceneError, load_scene, packaged_scenes
 from raycaster.verif.seeds import seed
-from raycaster.web.scene_schema import scene_schema
+from raycaster.web.site import scene_schema
 
 NAME = "scene.toml"
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from conftest import SMALL_SCENE, called, write_script
 
-from raycaster.debug.probes.ray import fields
+from raycaster.debug.probes import fields
 from raycaster.debug.trace import main as trace
 from raycaster.debug.wave import viewer
 from raycaster.debug.wave_files import View, write_files

@@ -7,6 +7,8 @@
 
 const RayCasterLife = (() => {
   const LIT = -1, DARK_SIDE = -2;
+  // Steps of the control for each tested rectangle, in order, by kind of event.
+  const STEPS = { load: "steps_load_divider", store: "steps_store_quotient", write: "steps_write_z_buf" };
 
   // The taps of a design (see tap_facts), and their values.
   class Recording {
@@ -34,31 +36,26 @@ const RayCasterLife = (() => {
     }
   }
 
-  // Events of the rectangles, {clock, rectangle} each, that a ray was tested against before its end.
+  // Events of the rectangles that a ray was tested against before its end: each passes the unit's steps in order, and
+  // may wait for another one between two of them.
   function followed(recording, tried, bounce, end) {
-    const events = [];
-    const note = (kind, clock, rectangle) => events.push({ kind, clock, bounce, rectangle });
-    const divides = "steps_store_quotient" in recording.taps.controls;
-    const waiting = { start: [...tried], load: [], store: [] };
+    const { controls } = recording.taps, events = [];
+    const kinds = Object.keys(STEPS).filter((kind) => STEPS[kind] in controls);
+    const waiting = { find: [], ...Object.fromEntries(kinds.map((kind) => [kind, []])) };
     for (let clock = tried[0]?.clock ?? end; clock < end; clock++) {
       const strobe = (name) => recording.control(name, clock) === 1;
-      const move = (kind, from, to) => {
-        const one = from.shift();
-        if (!one) return;
-        note(kind, clock, one.rectangle);
-        to?.push(one);
+      const enter = (kind, rectangle) => {
+        waiting[kind].push(rectangle);
+        events.push({ kind, clock, bounce, rectangle });
       };
-      // Handle later stages first: a rectangle may wait in the divider while another one is loaded.
-      if (divides) {
-        if (strobe("steps_write_z_buf")) move("write", waiting.store);
-        if (strobe("steps_store_quotient")) move("store", waiting.load, waiting.store);
-        if (strobe("steps_load_divider") && waiting.start[0]?.clock <= clock) move("load", waiting.start, waiting.load);
-        if (strobe("early_out")) waiting.load.pop();
-      } else if (strobe("steps_write_z_buf")) {
-        move("write", waiting.start);
+      if (tried[0]?.clock === clock) enter("find", tried.shift().rectangle);
+      for (const [step, kind] of [...kinds.entries()].reverse()) {
+        const before = waiting[kinds[step - 1] ?? "find"];
+        if (strobe(STEPS[kind]) && before.length) enter(kind, before.shift());
       }
+      if ("early_out" in controls && strobe("early_out")) waiting.load.pop();
     }
-    return [...tried.map(({ clock, rectangle }) => ({ kind: "find", clock, bounce, rectangle })), ...events];
+    return events;
   }
 
   // Events of the rays, and of the rectangles that they were tested against. In a design with a light, "shade" is the

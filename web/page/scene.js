@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Scene files in the browser: RayCasterScene.read returns the scene, or the same error line as `load_scene` in
-// raycaster/scene.py. Rules and messages come from there, through web/scene_schema.py; this file implements each kind
+// raycaster/scene.py. Rules and messages come from there, through web/site.py; this file implements each kind
 // of rule. Needs vendor/smol-toml.js.
 //
 // Differences, because smol-toml is not Python's tomllib:
@@ -201,7 +201,7 @@ const RayCasterScene = (() => {
    * Reads a scene file.
    * @param {string|ArrayBuffer} source text or bytes of the file
    * @param {string} name name of the file, for the error
-   * @param {object} schema schema from web/scene_schema.py
+   * @param {object} schema schema from web/site.py
    * @param {number} [rectangles] number of rectangles that the hardware holds
    * @returns {{scene: ?object, error: ?string}} one of the two is null. Scene: title, rows, reflections, background,
    *   camera {position, yaw, pitch, roll}, light {position, quarters} or null, rect [{name, corners, colour, quarters,
