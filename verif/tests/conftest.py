@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import pytest
 from rich.console import Console
+from vectors import Bench as LeafBench
 
 from raycaster.cli.__main__ import main
 from raycaster.configuration import Configuration, configure
@@ -124,6 +125,12 @@ def reported_seed(request: pytest.FixtureRequest) -> None:
 def random() -> np.random.Generator:
     """Random numbers, the same for each test."""
     return np.random.default_rng(seed())
+
+
+@pytest.fixture
+def leaf_of(tmp_path: Path) -> Callable[..., LeafBench]:
+    """Return a function that makes the bench of a block; its arguments are those of `Bench` without the directory."""
+    return lambda block, config=None, **given: LeafBench(block, tmp_path, config, **given)
 
 
 @pytest.fixture

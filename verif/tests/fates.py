@@ -2,34 +2,28 @@
 """Possible fates of a group's rays, for tests of the blocks that control them."""
 
 from collections.abc import Callable, Sequence
-from functools import partial
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from vectors import check, check_fetches, driven, leaf_of
+from vectors import Bench, check_fetches
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.random_world import random_looks
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.common.interfaces import GroupFate, ShadowPass
-from raycaster.rtl.common.records import rect_of, surface_of
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 from raycaster.verif.expected import EARLY_OUT_AT, TraceCycle, ends_early, rect_cycles, sorted_rect, trace_cycles
 
 
-def control_leaf(function: Callable, config: Configuration, directory: Path) -> Leaf:
-    """Build a leaf of ray_control, exact_control, or the ray_sequencer in either of them."""
+def control_leaf(leaf_of: Callable[..., Bench], function: Callable, config: Configuration) -> Bench:
+    """Make a leaf of ray_control, exact_control, or the ray_sequencer in either of them."""
     ports: dict[str, Any] = {"fate": lambda: GroupFate(config)}
     if function is ray_sequencer:
         write_at = rect_cycles(config) + 3 if config.facts.divides else 2
         ports |= {"in_flight": write_at + 1, "shadow_pass": ShadowPass, "rect_cycles": lambda: rect_cycles(config)}
-    else:
-        ports["offered"] = partial(rect_of if config.facts.divides else surface_of, config)
-    return leaf_of(function, directory, config, **ports)
+    return leaf_of(function, config, **ports)
 
 
 def usable_masks(random: np.random.Generator, count: int) -> list[int]:
@@ -69,7 +63,7 @@ def random_fate(random: np.random.Generator, usable: Sequence[int], reflections:
     }
 
 
-def group_fate_in(random: np.random.Generator, cycle: TraceCycle, leaf: Leaf) -> dict[str, int]:
+def group_fate_in(random: np.random.Generator, cycle: TraceCycle, leaf: Bench) -> dict[str, int]:
     """Return the outputs of the units in a cycle, random where they are don't care."""
     said = {"fate_any_towards": cycle.towards, "fate_any_alive": cycle.alive}
     return {
@@ -93,28 +87,27 @@ def in_flight(stimulus: list[dict[str, int]], starts: list[int], cycle: int, wid
     return sum(bit << place for place, bit in enumerate(alive))
 
 
-def check_control(function: Callable, config: Configuration, tmp_path, random) -> None:
+def check_control(leaf: Bench, config: Configuration, random: np.random.Generator) -> None:
     """Check the control in rows of random fates, some of which are abandoned."""
-    leaf = control_leaf(function, config, tmp_path)
+    alone = "in_flight" in leaf.seen
     count = config.rectangles
     masks, table = usable_masks(random, count), flat_rectangles(random, count)
     table = random_looks(random, table)
     quiet = {name: 0 for name in leaf.outputs if name.startswith("steps_") and name != "steps_initial_ray"}
     quiet["done"] = 0
-    stimulus, expected, on_port, offers, starts = [], [], {}, [], []
+    on_port, offers, starts = {}, [], []
 
     def drive(inputs, wanted=None, cycle: TraceCycle | None = None):
         if cycle is not None and cycle.current is not None:
-            on_port[len(stimulus)] = cycle.current
-        shown = on_port[len(stimulus)] if len(stimulus) in on_port else int(random.integers(count))
-        stimulus.append(inputs | sorted_rect(table, shown, "rects_rect", config))
+            on_port[leaf.cycle] = cycle.current
+        shown = on_port[leaf.cycle] if leaf.cycle in on_port else int(random.integers(count))
+        leaf.case(inputs | sorted_rect(table, shown, "rects_rect", config), wanted)
         offered = cycle.offered if cycle is not None else None
         if offered is not None:
-            offers.append(len(stimulus) - 1)
+            offers.append(leaf.cycle - 1)
             rect = sorted_rect(table, offered, "offered", config)
-            wanted = wanted | {name: value for name, value in rect.items() if name in leaf.seen}
+            leaf.expect({name: value for name, value in rect.items() if name in leaf.seen})
         starts.append(wanted["steps_find_intersection"] if wanted else 0)
-        expected.append(wanted)
 
     for number, mask in enumerate(masks):
         usable = [index for index in range(count) if mask >> index & 1]
@@ -139,7 +132,7 @@ def check_control(function: Callable, config: Configuration, tmp_path, random) -
             if cycle.steps["steps_screen_to_ray"]:
                 del wanted["steps_initial_ray"]
             inputs = {**held, "enable": int(random.integers(2))}
-            if function is ray_sequencer:
+            if alone:
                 inputs["early_out"] = int(ends_early(config) and before.towards == 0)
             drive(inputs | group_fate_in(random, cycle, leaf), wanted, cycle)
         if not abandoned:
@@ -147,12 +140,12 @@ def check_control(function: Callable, config: Configuration, tmp_path, random) -
                 # Rendering is over, so reflections may change.
                 after = {"picture_reflections": int(random.integers(config.reflections + 1))}
                 drive({**held, **after, "enable": int(random.integers(2))}, {**quiet, "done": 1})
-    if function is ray_sequencer:
+    if alone:
         width = leaf.seen["in_flight"].width
-        for cycle, wanted in enumerate(expected):
-            if wanted is not None and cycle >= width:
-                expected[cycle] = {**wanted, "in_flight": in_flight(stimulus, starts, cycle, width)}
-    outputs = check(leaf, driven(leaf, stimulus), expected, settled=offers[0])
+        for cycle, wanted in leaf.expected.items():
+            if cycle >= width:
+                wanted["in_flight"] = in_flight(leaf.stimulus, starts, cycle, width)
+    outputs = leaf.check(settled=offers[0], spare=True)
     check_fetches(outputs, on_port, "rects_", settled=offers[0])
 
 

@@ -109,7 +109,7 @@ def test_every_module_is_on_the_page_of_the_structure():
     assert all(re.search(rf"\b{name}\b", listed) for name in there)
 
 
-def test_the_example_module_works(tmp_path: Path, monkeypatch):
+def test_the_example_module_works(leaf_of, random, tmp_path: Path, monkeypatch):
     """The module and the leaf test in `docs/extend.md` work as described and follow the project's rules."""
     page = (ROOT / "docs/extend.md").read_text()
     module, _, leaf = re.findall(r"^```python\n(.*?)^```", page, re.M | re.S)
@@ -123,7 +123,7 @@ def test_the_example_module_works(tmp_path: Path, monkeypatch):
     # The test finds the module where the page says that it is.
     monkeypatch.setattr(engine, "__path__", [*engine.__path__, str(tmp_path)])
     monkeypatch.syspath_prepend(tmp_path)
-    importlib.import_module("test_colour_dimmer").test_colour_dimmer(tmp_path)
+    importlib.import_module("test_colour_dimmer").test_colour_dimmer(leaf_of, random)
 
 
 def test_timing_diagrams_match_the_design():

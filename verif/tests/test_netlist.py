@@ -9,9 +9,11 @@ from pathlib import Path
 
 import pytest
 from conftest import BUILD, ROOT, SMALL_SCENE, called, refusal
-from engine_vectors import check_ray_unit, ray_unit_leaf
+from engine_vectors import check_ray_unit
+from vectors import Bench
 
 from raycaster.configuration import configure
+from raycaster.rtl.seed.ray_unit import ray_unit
 from raycaster.scene import packaged_scenes
 from raycaster.sim import netlist
 from raycaster.sim import scenes as simulate
@@ -53,30 +55,31 @@ def test_frame(tmp_path, cells, options, light, some):
 
 @pytest.fixture(scope="module")
 def unit(tmp_path_factory) -> tuple:
-    """Return a ray unit of the default design, the design and the unit's netlist."""
+    """Return the default design and the netlist of its ray unit."""
     directory = tmp_path_factory.mktemp("ray_unit")
     config = configure()
-    leaf = ray_unit_leaf(config, directory)
-    return leaf, config, synthesise(leaf.verilog, directory / "netlist", top="ray_unit")
+    return config, synthesise(Bench(ray_unit, directory, config).verilog, directory / "netlist", top="ray_unit")
 
 
-def test_ray_unit(unit, random):
-    leaf, config, made = unit
+def test_ray_unit(unit, leaf_of, random):
+    config, made = unit
+    leaf = leaf_of(ray_unit, config)
     assert made.cells["LUT4"] > 500
     assert made.cells["TRELLIS_FF"] > 200
     leaf.verilog = made.files
     check_ray_unit(leaf, config, random, rays=100)
 
 
-def test_broken_cell_is_noticed(unit, tmp_path, random):
+def test_broken_cell_is_noticed(unit, leaf_of, tmp_path, random):
     """A single changed carry cell among hundreds of cells makes wrong pixels."""
-    leaf, config, made = unit
+    config, made = unit
     *models, file = made.files
     text, sound = file.read_text(), 'INJECT1_0("NO")'
     instances = re.findall(r"^  CCU2C #\([^;]*;", text, re.MULTILINE)
     chosen = next(one for one in instances if "colour_sum_0_i.total" in one and sound in one)
     changed = tmp_path / "netlist.v"
     changed.write_text(text.replace(chosen, chosen.replace(sound, 'INJECT1_0("YES")')))
+    leaf = leaf_of(ray_unit, config)
     leaf.verilog = [*models, changed]
     with pytest.raises(AssertionError, match=r"ray_unit, cycle \d+: Verilog .*, MyHDL "):
         check_ray_unit(leaf, config, random)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Vectors and exact arithmetic for leaf tests of the beam engine's blocks."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -9,7 +10,7 @@ from typing import Any
 
 import numpy as np
 from hard_scenes import sharpened, verdict
-from vectors import AXES, LAST, any_place, by_axis, check, colour_word, designs, leaf_of, named
+from vectors import AXES, LAST, Bench, any_place, by_axis, colour_word, designs, named
 
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
 from raycaster.engines.beam import TESTER_LATENCY, fold_lead, is_staged, slope_at
@@ -17,13 +18,8 @@ from raycaster.golden.exact import ExactModel
 from raycaster.golden.random_world import random_basis, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.common.records import candidate_of, facet_of, stride_of, walk_of
-from raycaster.rtl.common.widths import (
-    index_bits,
-    steepest_slope,
-    walk_bits,
-)
+from raycaster.rtl.common.widths import steepest_slope, walk_bits
 
 P, Q = (1, 0, 1), (2, 2, 0)
 """The axes p and q, indexed by a plane's axis: p is y unless the plane is on y, q is z unless it is on z."""
@@ -204,14 +200,13 @@ def folded(camera, slope, mirrors) -> dict[str, int]:
     return fields | {"mirror_back": int(turned[axis] < 0), "axis": axis, "distance": distance}
 
 
-def check_tester(block, config: Configuration, tmp_path, random: np.random.Generator) -> None:
+def check_tester(leaf_of: Callable[..., Bench], block: Callable, config: Configuration, random: np.random.Generator):
     """Test mirrored rays if the block has a port for their fold, otherwise rays from the camera."""
-    folds = block is fold_tester
+    leaf = leaf_of(block, config, hit=lambda: candidate_of(config), staged=is_staged(config))
+    folds = "fold_axis" in leaf.given
     lead = fold_lead(config) if folds else 0
     strobes = ("step_way", "step_bounds", "step_slope")
-    hits = {"index": index_bits(config), "hit": lambda: candidate_of(config), "staged": is_staged(config)}
-    leaf = leaf_of(block, tmp_path, config, **hits)
-    stimulus, expected, seen = [], {}, set()
+    seen = set()
     # The more mirrors, the fewer of them meet in one point.
     count, most = (3600 * max(1, config.reflections - 1), None) if folds else (1500, 0)
     for table, chosen, camera, slope, mirrors in beam_rays(random, config, count, most):
@@ -246,12 +241,13 @@ def check_tester(block, config: Configuration, tmp_path, random: np.random.Gener
             wanted = {"valid": hit and usable, "index": number}
             wanted |= {"axis": table.axes[index], "cell": cell} if config.patterns else {}
             wanted |= {"at_mirror": at_mirror, "numerator": n, "denominator": e} if hit else {}
-            expected[len(stimulus) + lead + TESTER_LATENCY] = named("hit", wanted)
-            stimulus += cycles
+            leaf.expected[leaf.cycle + lead + TESTER_LATENCY] = named("hit", wanted)
+            leaf.stimulus += cycles
     # No mirror: miss or hit. One, or two in one point: also a hit in that point. Three in one point hide the rest.
     assert len([case for case in seen if case[0] < 3]) == (3 * min(config.reflections, 2) if folds else 2)
     assert ((3, False, False) in seen) == (config.reflections > 2 and folds)
-    check(leaf, [*stimulus, dict.fromkeys(strobes, 0)], expected, settled=lead + TESTER_LATENCY)
+    leaf.case(dict.fromkeys(strobes, 0))
+    leaf.check(settled=lead + TESTER_LATENCY)
 
 
 @cache

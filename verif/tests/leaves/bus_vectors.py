@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Callable
 
 import numpy as np
 import pytest
-from vectors import any_word, leaf_of
+from vectors import any_word
 
 from raycaster.buses import BUSES
-from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.bus.buses import BRIDGES
 from raycaster.rtl.common.interfaces import AvalonPort
 from raycaster.rtl.common.widths import LANES
@@ -28,8 +27,12 @@ class Agent:
 
     def __init__(self, random: np.random.Generator, patience: float, latency: int):
         self._random, self._patience, self._latency = random, patience, latency
+        self.reset()
+
+    def reset(self) -> None:
         self._due = None  # cycles until the accepted read is answered
         self.word = self.waits = self.answers = 0
+        self.taken = self.outstanding = False
 
     def drive(self) -> dict[str, int]:
         """Return the agent's outputs in this cycle; readdata changes only with an answer."""
@@ -40,9 +43,12 @@ class Agent:
             self.word = any_word(self._random)
         return {"avm_m0_readdata": self.word, "avm_m0_readdatavalid": self.answers, "avm_m0_waitrequest": self.waits}
 
-    def take(self) -> None:
-        """Accept a read in this cycle; the answer comes two cycles later at the earliest."""
-        self._due = int(self._random.integers(1, self._latency))
+    def clock(self, reads: bool) -> None:
+        """End a cycle in which a read is requested or not; its answer comes two cycles later at the earliest."""
+        self.taken = reads and not self.waits
+        self.outstanding = self.taken or (self.outstanding and not self.answers)
+        if self.taken:
+            self._due = int(self._random.integers(1, self._latency))
 
 
 def any_lanes(random: np.random.Generator) -> int:
@@ -54,8 +60,9 @@ def any_byte_address(random: np.random.Generator) -> int:
     return int(random.integers(4 << ADDRESS_BITS))
 
 
-def bridge_leaf(name: str, directory: Path) -> Leaf:
-    """Make a leaf of a bus's bridge."""
-    bridge = BRIDGES[name]
-    manager = {BUSES[name].port: lambda: bridge.interface(ADDRESS_BITS)}
-    return leaf_of(bridge.block, directory, **manager, avm_m0=lambda: AvalonPort(ADDRESS_BITS))
+def bridge_ports(name: str) -> dict[str, Callable]:
+    """Return the two ports of a bus's bridge, as for `Bench`."""
+    return {
+        BUSES[name].port: lambda: BRIDGES[name].interface(ADDRESS_BITS),
+        "avm_m0": lambda: AvalonPort(ADDRESS_BITS),
+    }

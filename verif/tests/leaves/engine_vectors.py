@@ -8,26 +8,18 @@ from unittest import mock
 
 import numpy as np
 from hard_scenes import edged, pixel_ports, pixel_word, rectangles_in_view, traced_scene, tracer
-from vectors import AXES, by_axis, check, colour_word, leaf_of
+from vectors import AXES, Bench, by_axis, colour_word
 
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
-from raycaster.hdl.leaf import Leaf
-from raycaster.rtl.common.interfaces import RayFate
-from raycaster.rtl.common.records import rect_of
-from raycaster.rtl.seed.ray_unit import ray_unit
 from raycaster.screens import BEAM_SCREENS, SCREENS, Screen, Span
 from raycaster.verif.expected import sorted_rect, trace_cycles
 
 SMALL_SCREEN = Screen(
-    columns=16,
-    rows=4,
-    horizon_row=3,
-    doubling=2,
-    horizontal=Span(32, 8, 24, 20, active_high=False),
-    vertical=Span(8, 1, 2, 2, active_high=True),
-)
+    columns=16, rows=4, horizon_row=3, doubling=2,
+    horizontal=Span(32, 8, 24, 20, active_high=False), vertical=Span(8, 1, 2, 2, active_high=True),
+)  # fmt: skip
 """A screen so small that MyHDL's simulator shows a whole frame in seconds."""
 
 
@@ -100,16 +92,11 @@ def unrelated_inputs(random: np.random.Generator, config: Configuration) -> dict
     }
 
 
-def ray_unit_leaf(config: Configuration, directory) -> Leaf:
-    """Make a leaf of the seed engine's unit."""
-    return leaf_of(ray_unit, directory, config, offered=lambda: rect_of(config), fate=RayFate)
-
-
-def check_ray_unit(leaf: Leaf, config: Configuration, random: np.random.Generator, rays: int = 24) -> None:
+def check_ray_unit(leaf: Bench, config: Configuration, random: np.random.Generator, rays: int = 24) -> None:
     """Step rays through a unit as its control does; compare MyHDL and Verilog with the golden model."""
     slopes = primary_slopes(config.screen_geometry)
     rows, columns, _ = slopes.shape
-    stimulus, expected, pixels = [], {}, []
+    pixels = []
     # Numbers of surfaces that a ray hits; each must occur, from none to the most.
     fates, every_fate = set(), set(range(config.reflections + 2))
     while len(pixels) < rays or fates != every_fate:
@@ -124,16 +111,15 @@ def check_ray_unit(leaf: Leaf, config: Configuration, random: np.random.Generato
         held["picture_background"] = colour_word(background)
         for cycle in trace_cycles(config, usable_of(table), reflections, **fate_of(config, golden, table)):
             inputs = {**held, **cycle.steps, **rects_shown(config, cycle, table)}
-            fated = {"fate_towards": cycle.towards, "fate_alive": cycle.alive}
-            expected[len(stimulus)] = {name: value for name, value in fated.items() if name in leaf.seen}
             if not cycle.steps["steps_screen_to_ray"] and not cycle.steps["steps_find_intersection"]:
                 inputs |= unrelated_inputs(random, config)
-            stimulus.append(inputs)
-        pixels.append(len(stimulus))
-        expected[len(stimulus)] = pixel_ports(config, golden.colours[0])
+            fate = {"fate_towards": cycle.towards, "fate_alive": cycle.alive}
+            leaf.case(inputs, {name: value for name, value in fate.items() if name in leaf.seen})
+        pixels.append(leaf.cycle)
         # After done, the pixel stays valid whatever the inputs.
-        stimulus.append({**dict.fromkeys(stimulus[-1], 0), "picture_background": held["picture_background"]})
-    check(leaf, stimulus, expected, settled=pixels[0])
+        after = {**dict.fromkeys(inputs, 0), "picture_background": held["picture_background"]}
+        leaf.case(after, pixel_ports(config, golden.colours[0]))
+    leaf.check(settled=pixels[0])
 
 
 def monitored(outputs: list[dict[str, int]], config: Configuration) -> list[np.ndarray]:
@@ -173,19 +159,15 @@ def golden_words(config: Configuration, colours: np.ndarray) -> np.ndarray:
     return np.array(words).reshape(screen.rows, screen.columns)
 
 
-def start_screen_cycle(screen: Screen) -> int:
+def start_cycle(screen: Screen) -> int:
     """Cycles from the end of reset to the first StartScreen."""
     return (screen.vertical.blank - screen.doubling) * screen.line_cycles
 
 
 TINY_SCREEN = Screen(
-    columns=8,
-    rows=2,
-    horizon_row=1,
-    doubling=2,
-    horizontal=Span(16, 8, 24, 20, active_high=False),
-    vertical=Span(4, 1, 2, 2, active_high=True),
-)
+    columns=8, rows=2, horizon_row=1, doubling=2,
+    horizontal=Span(16, 8, 24, 20, active_high=False), vertical=Span(4, 1, 2, 2, active_high=True),
+)  # fmt: skip
 """A screen that shows many frames in a short time."""
 
 

@@ -64,14 +64,8 @@ def rectangle_words(random: np.random.Generator) -> tuple[Rectangles, list[tuple
         # Values above 4 mean 4.
         mirror = int(random.integers(4, 8) if table.mirrors[index] == 4 else table.mirrors[index])
         cell = int(table.cells[index]).bit_length() - 4
-        words.append(
-            (
-                first,
-                second,
-                surface.pack(enable=int(table.enabled[index]), mirror=mirror, **channels),
-                pattern.pack(kind=int(table.kinds[index]), cell=cell, **channels_2),
-            )
-        )
+        look = surface.pack(enable=int(table.enabled[index]), mirror=mirror, **channels)
+        words.append((first, second, look, pattern.pack(kind=int(table.kinds[index]), cell=cell, **channels_2)))
     return table, words
 
 

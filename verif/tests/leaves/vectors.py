@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The shape of a leaf test: `leaf_of` makes the block, `check` runs a stimulus and compares the outputs."""
+"""The bench of a leaf test, which runs the same vectors through MyHDL and the converted Verilog, and its vectors."""
 
 from __future__ import annotations
 
 import inspect
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,70 +15,61 @@ import pytest
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
 from raycaster.golden.random_world import EXTREMES
 from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import Signed, bit, reset_signal, signed, unsigned
-from raycaster.rtl.common.interfaces import (
-    Access,
-    Direction,
-    Eye,
-    Picture,
-    Place,
-    Progress,
-    Rects,
-    Slope,
-    Steps,
-    vga_of,
-)
-from raycaster.rtl.common.records import (
-    Pixel,
-    Signs,
-    camera_of,
-    candidate_of,
-    facet_of,
-    fold_of,
-    mirror_of,
-    rect_of,
-    room_image_of,
-    seen_of,
-    walk_of,
-    winner_of,
-)
-from raycaster.rtl.common.widths import LANES, WORD_BITS, exact_slope_bits, eye_bits, unit_bits
+from raycaster.hdl.signals import Signed, bit, reset_signal, signed, tied, unsigned
+from raycaster.registers import address_bits
+from raycaster.rtl.common import interfaces, records, widths
 from raycaster.verif.seeds import repeat
 
-PORTS: dict[str, Callable[[Configuration], object]] = {
+PORTS: dict[str, int | Callable[[Any], Any]] = {
     "reset": lambda _: reset_signal(),
-    "access": lambda _: Access(),
-    "aim": lambda config: Direction(exact_slope_bits(config) + 1),
-    "camera": camera_of,
-    "column_base": lambda config: unsigned(unit_bits(config)),
-    "eye": lambda config: Eye(eye_bits(config)),
-    "facet": facet_of,
-    "facets": lambda config: unsigned(config.rectangles * len(facet_of(config).word)),
-    "fold": fold_of,
-    "initial_signs": lambda _: Signs(),
-    "mirror": mirror_of,
-    "nearest": candidate_of,
-    "picture": lambda _: Picture(),
-    "pixel": lambda config: Pixel(config.colour_bits),
-    "place": Place,
-    "progress": lambda _: Progress(),
-    "rect": rect_of,
-    "rects": Rects,
-    "seen": seen_of,
-    "signs": lambda _: Signs(),
-    "slope": lambda config: Slope(exact_slope_bits(config)),
-    "steps": lambda _: Steps(),
-    "strobe": lambda _: unsigned(LANES),
-    "image": room_image_of,
-    "vga": vga_of,
-    "walk": walk_of,
-    "winner": winner_of,
+    "access": lambda _: interfaces.Access(),
+    "aim": lambda config: interfaces.Direction(widths.exact_slope_bits(config) + 1),
+    "bus": lambda config: interfaces.SceneBus(address_bits(config.rectangles)),
+    "camera": records.camera_of,
+    "column_base": lambda config: unsigned(widths.unit_bits(config)),
+    "data": widths.WORD_BITS,
+    "denominator": lambda config: unsigned(widths.exact_slope_bits(config)),
+    "eye": lambda config: interfaces.Eye(widths.eye_bits(config)),
+    "facet": records.facet_of,
+    "facets": lambda config: unsigned(config.rectangles * len(records.facet_of(config).word)),
+    "fate": lambda _: interfaces.RayFate(),
+    "fold": records.fold_of,
+    "found_colour": widths.RGB_BITS,
+    "found_distance": lambda config: unsigned(widths.eye_bits(config) - 1),
+    "found_mirror": lambda config: unsigned(widths.MIRROR_BITS) if config.materials else tied(0, widths.MIRROR_BITS),
+    "found_slope": lambda config: unsigned(widths.exact_slope_bits(config)),
+    "found_surface": records.surface_of,
+    "image": records.room_image_of,
+    "index": lambda config: unsigned(widths.index_bits(config)),
+    "initial_signs": lambda _: records.Signs(),
+    "may_hit": lambda config: unsigned(config.rectangles),
+    "mirror": records.mirror_of,
+    "nearest": records.candidate_of,
+    "numerator": lambda config: unsigned(widths.eye_bits(config) - 1),
+    "offered": lambda config: (records.rect_of if config.facts.divides else records.surface_of)(config),
+    "picture": lambda _: interfaces.Picture(),
+    "pixel": lambda config: records.Pixel(config.colour_bits),
+    "place": interfaces.Place,
+    "progress": lambda _: interfaces.Progress(),
+    "readback": widths.WORD_BITS,
+    "rect": records.rect_of,
+    "rects": interfaces.Rects,
+    "seen": records.seen_of,
+    "share": lambda config: unsigned(widths.share_bits(config)),
+    "signs": lambda _: records.Signs(),
+    "slope": lambda config: interfaces.Slope(widths.exact_slope_bits(config)),
+    "start": records.walk_of,
+    "steps": lambda _: interfaces.Steps(),
+    "strobe": widths.LANES,
+    "vga": interfaces.vga_of,
+    "walk": records.walk_of,
+    "winner": records.winner_of,
 }
-"""Signals of the ports whose names mean the same in most blocks."""
+"""Widths and signals of the ports whose names mean the same in most blocks."""
 
 
-def leaf_of(block: Callable, directory: Path, config: Any = None, **given: Any) -> Leaf:
-    """Make a leaf with new signals at the block's ports.
+class Bench(Leaf):
+    """A block with new signals at its ports, its stimulus, and the outputs that are expected.
 
     Args:
         block: the block.
@@ -86,49 +78,65 @@ def leaf_of(block: Callable, directory: Path, config: Any = None, **given: Any) 
         given: by name, a port's width (`Signed` for two's complement) or a function that makes its signal; an argument
             with a type or a default is no port and is passed on. A port that is neither here nor in `PORTS` is a bit.
     """
-    parameters = inspect.signature(block).parameters
-    assert set(given) <= set(parameters), set(given) - set(parameters)
 
-    def argument(name: str) -> object:
-        parameter = parameters[name]
-        if name == "config":
-            return config
-        if parameter.annotation is not parameter.empty or parameter.default is not parameter.empty:
-            return given[name]
-        made = given.get(name, PORTS.get(name))
-        if isinstance(made, int):
-            return signed(made) if isinstance(made, Signed) else unsigned(made)
-        return bit() if made is None else made() if name in given else made(config)
+    def __init__(self, block: Callable, directory: Path, config: Any = None, **given: Any):
+        parameters = inspect.signature(block).parameters
+        assert set(given) <= set(parameters), set(given) - set(parameters)
 
-    names = [name for name, one in parameters.items() if one.default is one.empty or name in given]
-    return Leaf(block, lambda: {name: argument(name) for name in names}, directory)
+        def argument(name: str) -> object:
+            parameter = parameters[name]
+            if name == "config":
+                return config
+            if parameter.annotation is not parameter.empty or parameter.default is not parameter.empty:
+                return given[name]
+            made = given.get(name, PORTS.get(name, lambda _: bit()))
+            if isinstance(made, int):
+                return signed(made) if isinstance(made, Signed) else unsigned(made)
+            return made() if name in given else made(config)
 
+        names = [name for name, one in parameters.items() if one.default is one.empty or name in given]
+        super().__init__(block, lambda: {name: argument(name) for name in names}, directory)
+        self.stimulus: list[Mapping[str, Any]] = []
+        """By cycle, the inputs, as for `run_both`; negative numbers are two's complement."""
+        self.expected: dict[int, Mapping[str, Any]] = defaultdict(dict)
+        """By cycle of the stimulus, all or some outputs; None for don't care."""
 
-def check(
-    leaf: Leaf,
-    stimulus: Sequence[Mapping[str, Any]],
-    expected: Mapping[int, Mapping[str, Any] | None] | Iterable[Mapping[str, Any] | None],
-    latency: int = 0,
-    settled: int | None = None,
-) -> Sequence[Mapping[str, Any]]:
-    """Run a stimulus in both simulators, compare the outputs with those expected, and return them.
+    @property
+    def cycle(self) -> int:
+        """The number of the next cycle."""
+        return len(self.stimulus)
 
-    Args:
-        leaf: the block.
-        stimulus: by cycle, the inputs, as for `Leaf.run_both`; negative numbers are two's complement.
-        expected: by cycle of the stimulus, all or some outputs `latency` cycles later; None for don't care.
-        latency: cycles from the inputs of a case to its outputs.
-        settled: the first cycle in which all outputs are known and compared, by default after the latency.
-    """
-    settled = latency if settled is None else settled
-    outputs = leaf.run_both([*plain(stimulus), *[{}] * latency], settled=settled)
-    for cycle, wanted in expected.items() if isinstance(expected, Mapping) else enumerate(expected):
-        for name, value in (wanted or {}).items():
-            if value is not None and cycle + latency >= settled:
-                seen, span = outputs[cycle + latency][name], 1 << leaf.seen[name].width
-                right = value == int(value) and -span <= 2 * value < 2 * span and seen == int(value) % span
-                assert right, f"cycle {cycle + latency}: {name} is {seen}, expected {value}; {repeat()}"
-    return outputs
+    def case(self, inputs: Mapping[str, Any], outputs: Mapping[str, Any] | None = None) -> None:
+        """Add a cycle with these inputs, from which these outputs follow; None for don't care."""
+        self.stimulus.append(inputs)
+        self.expect(outputs)
+
+    def expect(self, outputs: Mapping[str, Any] | None, when: object = True) -> None:
+        """Expect these outputs from the last cycle added, if the condition holds."""
+        if outputs and when:
+            self.expected[self.cycle - 1] |= outputs
+
+    def check(self, latency: int = 0, settled: int | None = None, spare: bool = False) -> Sequence[Mapping[str, Any]]:
+        """Run the stimulus in both simulators, compare the outputs with those expected, and return them.
+
+        Args:
+            latency: cycles from the inputs of a case to its outputs.
+            settled: the first cycle in which all outputs are known and compared, by default after the latency.
+            spare: ignore inputs that this leaf lacks, such as those of features that its design lacks.
+        """
+        settled = latency if settled is None else settled
+        inputs = [
+            {name: int(value) for name, value in cycle.items() if name in self.given or not spare}
+            for cycle in [*self.stimulus, *[{}] * latency]
+        ]
+        outputs = self.run_both(inputs, settled)
+        for cycle, wanted in self.expected.items():
+            for name, value in wanted.items():
+                if value is not None and cycle + latency >= settled:
+                    seen, span = outputs[cycle + latency][name], 1 << self.seen[name].width
+                    right = value == int(value) and -span <= 2 * value < 2 * span and seen == int(value) % span
+                    assert right, f"cycle {cycle + latency}: {name} is {seen}, expected {value}; {repeat()}"
+        return outputs
 
 
 def check_fetches(outputs: Sequence[Mapping[str, Any]], shown: Mapping[int, int], port: str, settled: int = 0) -> None:
@@ -148,21 +156,11 @@ def check_fetches(outputs: Sequence[Mapping[str, Any]], shown: Mapping[int, int]
             fetched = output[f"{port}index"]
 
 
-def plain(stimulus: Iterable[Mapping[str, Any]]) -> list[dict[str, int]]:
-    """Return a stimulus with Python's own numbers, whatever kind of number it has."""
-    return [{name: int(value) for name, value in cycle.items()} for cycle in stimulus]
-
-
-def driven(leaf: Leaf, stimulus: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return a stimulus without the inputs that this leaf lacks, such as those of features that its design lacks."""
-    return [{name: value for name, value in cycle.items() if name in leaf.given} for cycle in stimulus]
-
-
 AXES = "xyz"
 
 LAST = WORLD_SIZE - 1
 
-EVERY_LANE = (1 << LANES) - 1
+EVERY_LANE = (1 << widths.LANES) - 1
 
 STEP = 3
 """World units per frame by which a button moves the camera."""
@@ -179,14 +177,43 @@ def any_config(**options: Any) -> Configuration:
     return configure(**{"allow_underrun": True} | options)
 
 
+def unit_config(**options: Any) -> Configuration:
+    """Make a design with few rectangles."""
+    return any_config(**{"rectangles": 4} | options)
+
+
+def exact_config(**options: Any) -> Configuration:
+    """Make a design of the exact engine."""
+    return any_config(engine="exact", **options)
+
+
 def config_id(value) -> str | None:
-    """Return the name of a parameter set that is a design."""
-    return value.name if isinstance(value, Configuration) else None
+    """Return the name of a parameter set that is a design or a block."""
+    return value.name if isinstance(value, Configuration) else getattr(value, "__name__", None)
 
 
-def designs(*configs: Configuration) -> pytest.MarkDecorator:
-    """Run a test for each of these designs, with its name in the test's."""
-    return pytest.mark.parametrize("config", configs, ids=config_id)
+def designs(*configs: Configuration, slow: Sequence[str] = (), quick: Sequence[str] = ()) -> Callable:
+    """Run a test for each of these designs, with its name in the test's; slow and quick are as for `slow_sets`."""
+
+    def marked(test: Callable) -> Callable:
+        test = pytest.mark.slow_sets(*slow, quick=quick)(test) if slow or quick else test
+        return pytest.mark.parametrize("config", configs, ids=config_id)(test)
+
+    return marked
+
+
+def by(**values: Iterable) -> Callable:
+    """Run a test for all combinations of its arguments' values, which are in its name in this order."""
+
+    def marked(test: Callable) -> Callable:
+        for name, each in values.items():
+            test = pytest.mark.parametrize(name, each)(test)
+        return test
+
+    return marked
+
+
+by_turn, by_reflections = by(turn=[False, True]), by(reflections=[0, 1, 2])
 
 
 def named(prefix: str, fields: Mapping[str, Any]) -> dict[str, Any]:
@@ -225,7 +252,7 @@ def any_place(random: np.random.Generator) -> int:
 
 def any_word(random: np.random.Generator) -> int:
     """Return a word of the bus."""
-    return int(random.integers(1 << WORD_BITS))
+    return int(random.integers(1 << widths.WORD_BITS))
 
 
 def any_strobe(random: np.random.Generator) -> int:

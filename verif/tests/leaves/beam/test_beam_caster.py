@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `beam_caster`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf test of `beam_caster`: whole rows of scenes in which a ray of the row meets mirrors and edges."""
 
-import numpy as np
 import pytest
 from beam_vectors import beam_config, race
+from engine_vectors import scene_inputs, usable_of
 from hard_scenes import pixel_ports, traced_scene
-from vectors import basis_inputs, by_axis, check, colour_word, config_id, leaf_of
+from vectors import basis_inputs, config_id
 
 from raycaster.engines.beam import AIM_LATENCY, SETUP_LATENCY, beam_latency, start_cycles
 from raycaster.golden.exact import ExactModel
@@ -56,16 +56,15 @@ ALL = {"turn": True, "materials": True, "patterns": True}
     ],
     ids=config_id,
 )
-def test_beam_caster(config, lines, tmp_path, random):
-    """Whole rows of scenes in which a ray of the row meets mirrors and edges."""
-    leaf = leaf_of(beam_caster, tmp_path, config, row_slope=Signed(factor_bits(config)), pixel=lambda: shown_of(config))
+def test_beam_caster(config, lines, leaf_of, random):
+    leaf = leaf_of(beam_caster, config, row_slope=Signed(factor_bits(config)), pixel=lambda: shown_of(config))
     slopes, basis, horizon_row = primary_slopes(config.screen_geometry), UNTURNED, config.screen_geometry.horizon_row
     # If the camera can turn, the rectangles are set up once per lane, and once more.
     sweep = SETUP_LATENCY + config.rectangles - 1
     sweeps = [AIM_LATENCY - 3 + sweep * turn for turn in range(config.pixels + 1)] if config.turn else [0]
     # Run until no column is in flight, whatever the registers started with.
     latency = beam_latency(config)
-    stimulus, expected, fates = [{"reset": 1}] * latency, {}, set()
+    leaf.stimulus, fates = [{"reset": 1}] * latency, set()
     flat = [horizon_row + slope for slope in (-3, -1, 1, 3)]
     for number in range(lines):
         if config.turn:
@@ -84,25 +83,23 @@ def test_beam_caster(config, lines, tmp_path, random):
             table = random_looks(random, table)
         traced = ExactModel().trace(table, camera, background, line, reflections)
         fates |= {tuple(int(winner[column] >= 0) for winner in traced.winners) for column in range(len(line))}
-        held = by_axis("camera_", camera) | (basis_inputs(basis) if config.turn else {})
-        held |= {"reset": 0, "start_line": 0, "next_column": 0, "picture_background": colour_word(background)}
-        held |= {"picture_reflections": reflections} if config.reflections else {}
-        usable = np.flatnonzero(table.visible)
-        held["rects_usable"] = sum(1 << int(index) for index in usable)
+        held = scene_inputs(camera, table, background, reflections) | (basis_inputs(basis) if config.turn else {})
+        held |= {"reset": 0, "start_line": 0, "next_column": 0}
         if number % 16 == 4:
             # Reset ends a line that has begun.
             begun = int(random.integers(config.rectangles + 2))
-            stimulus += [{**held, "start_line": 1}, *[held] * begun, {**held, "reset": 1}, *[held] * latency]
-        stimulus += [{**held, "start_line": 1}, held, held]
+            leaf.stimulus += [{**held, "start_line": 1}, *[held] * begun, {**held, "reset": 1}, *[held] * latency]
+        leaf.stimulus += [{**held, "start_line": 1}, held, held]
         held["row_slope"] = horizon_row - row
-        given = {first + 3 + index: index for first in sweeps for index in usable}
+        given = {first + 3 + index: index for first in sweeps for index in usable_of(table)}
         for cycle in range(3, start_cycles(config) + int(random.integers(4))):
             rect = sorted_rect(table, given[cycle], "rects_rect", config) if cycle in given else {}
-            stimulus.append({**held, **rect})
+            leaf.case({**held, **rect})
         for colours in traced.colours.reshape(-1, config.pixels, 3):
-            stimulus += [held] * int(random.random() < 0.5 * (config.scale == 1 and number % 8 == 0))
-            expected[len(stimulus) + latency] = pixel_ports(config, *colours)
-            stimulus.append({**held, "next_column": 1})
-        stimulus += [held] * latency
+            leaf.stimulus += [held] * int(random.random() < 0.5 * (config.scale == 1 and number % 8 == 0))
+            leaf.expected[leaf.cycle + latency] = pixel_ports(config, *colours)
+            leaf.case({**held, "next_column": 1})
+        leaf.stimulus += [held] * latency
     assert len(fates) >= config.reflections + 2
-    check(leaf, [*stimulus, {}], expected, settled=min(expected))
+    leaf.case({})
+    leaf.check(settled=min(leaf.expected), spare=not config.reflections)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `beam_lane`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`beam_lane`: rows with set-up products: every column, or every other one from the first or the second on."""
 
 import pytest
 from beam_vectors import any_view, beam_config, race, row_ports, row_ports_of
 from hard_scenes import pixel_ports
-from vectors import check, colour_word, config_id, leaf_of
+from vectors import colour_word, config_id
 
 from raycaster.engines.beam import beam_latency
 from raycaster.golden.exact import ExactModel
@@ -25,11 +25,10 @@ from raycaster.rtl.beam.beam_lane import beam_lane
     ],
     ids=config_id,
 )
-def test_beam_lane(config, first, lines, tmp_path, random):
-    """Rows with set-up products: every column, or every other one from the first or the second on."""
-    leaf = leaf_of(beam_lane, tmp_path, config, enter=lambda: tied(0, 1), **row_ports_of(config))
+def test_beam_lane(config, first, lines, leaf_of, random):
+    leaf = leaf_of(beam_lane, config, enter=lambda: tied(0, 1), **row_ports_of(config))
     slopes, latency = primary_slopes(config.screen_geometry), beam_latency(config)
-    stimulus, expected = [{"next_column": 0}] * latency, {}
+    leaf.stimulus = [{"next_column": 0}] * latency
     for number in range(lines):
         view = any_view(random, config) if number % 2 else slopes[int(random.integers(len(slopes)))]
         camera, table, column = race(random, config, view)
@@ -39,10 +38,11 @@ def test_beam_lane(config, first, lines, tmp_path, random):
         traced = ExactModel().trace(table, camera, background, line[first :: config.pixels], reflections)
         held, begin = row_ports(config, table, camera, view[first : first + 2])
         held |= {"next_column": 0, "picture_reflections": reflections, "picture_background": colour_word(background)}
-        stimulus += [held | cycle for cycle in begin]
+        leaf.stimulus += [held | cycle for cycle in begin]
         for colour in traced.colours:
             # The pixels that other lanes compute are not connected.
-            expected[len(stimulus) + latency] = pixel_ports(config, colour)
-            stimulus.append({**held, "next_column": 1})
-        stimulus += [held] * latency
-    check(leaf, [*stimulus, {}], expected, settled=min(expected))
+            leaf.expected[leaf.cycle + latency] = pixel_ports(config, colour)
+            leaf.case({**held, "next_column": 1})
+        leaf.stimulus += [held] * latency
+    leaf.case({})
+    leaf.check(settled=min(leaf.expected))

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `beam_pass`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf test of `beam_pass`: the rectangle that a ray meets after a number of mirrors, in rows with set-up products."""
 
 import numpy as np
 import pytest
 from beam_vectors import any_view, beam_config, folded, met_last, race, row_ports, row_ports_of, seen_from
 from hard_scenes import verdict
-from vectors import check, leaf_of, named
+from vectors import by, named
 
 from raycaster.engines.beam import winner_latency
 from raycaster.golden.exact import ExactModel
@@ -13,16 +13,15 @@ from raycaster.rtl.beam.beam_pass import beam_pass
 
 
 @pytest.mark.slow_sets("1")
-@pytest.mark.parametrize("mirrors", [0, 1, 2])
-def test_beam_pass(mirrors, tmp_path, random):
-    """The rectangle that a ray meets after a number of mirrors, in rows with set-up products."""
+@by(mirrors=[0, 1, 2])
+def test_beam_pass(mirrors, leaf_of, random):
     config = beam_config(screen="tiny", rectangles=3, reflections=2, scale=1)
     tested = {"tested": range(config.rectangles), "reflected": mirrors > 0}
-    leaf = leaf_of(beam_pass, tmp_path, config, **row_ports_of(config), **tested)
+    leaf = leaf_of(beam_pass, config, **row_ports_of(config), **tested)
     # A column's strobes follow it.
     strobes = {"step": 0, "step_way": int(not mirrors), "step_bounds": 1, "step_slope": 2}
     quiet, latency = dict.fromkeys(strobes, 0), winner_latency(config)
-    stimulus, expected = [quiet] * latency, {}
+    leaf.stimulus = [quiet] * latency
     for _ in range(500):
         view = any_view(random, config)
         camera, table, column = race(random, config, view)
@@ -31,7 +30,7 @@ def test_beam_pass(mirrors, tmp_path, random):
         line = view[first : column + 1 + int(random.integers(4))]
         traced = ExactModel().trace(table, camera, (0, 0, 0), line, mirrors)
         held, begin = row_ports(config, table, camera, view[first : first + 2])
-        stimulus += [quiet | held | cycle for cycle in begin]
+        leaf.stimulus += [quiet | held | cycle for cycle in begin]
         # Some cycles have no column.
         starts = np.cumsum(random.choice([1, 2], len(line), p=[0.8, 0.2])).tolist()
         cycles = [quiet | held for _ in range(starts[-1] + latency + 1)]
@@ -50,6 +49,7 @@ def test_beam_pass(mirrors, tmp_path, random):
                 _, n, e, at_mirror = verdict(table, winner, *seen_by, met_last(camera, slope, met))
                 wanted |= {"winner_index": winner, "winner_at_mirror": at_mirror}
                 wanted |= {"nearest_numerator": n, "nearest_denominator": e}
-            expected[len(stimulus) + start + latency] = wanted
-        stimulus += cycles
-    check(leaf, [*stimulus, quiet], expected, settled=min(expected))
+            leaf.expected[leaf.cycle + start + latency] = wanted
+        leaf.stimulus += cycles
+    leaf.case(quiet)
+    leaf.check(settled=min(leaf.expected))

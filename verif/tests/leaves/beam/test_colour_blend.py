@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `colour_blend`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`colour_blend`: from a miss on, every ray shows the background; the mirrors before a ray set its weight."""
 
 from fractions import Fraction
 
 from beam_vectors import beam_config
 from hard_scenes import pixel_ports
-from vectors import check, designs, driven, leaf_of
+from vectors import designs
 
 from raycaster.engines.beam import blend_latency, mixes
 from raycaster.rtl.beam.colour_blend import colour_blend
@@ -23,11 +23,9 @@ from raycaster.rtl.common.widths import RGB_BITS
     beam_config(reflections=4, materials=True),
     beam_config(reflections=0, materials=True),
 )
-def test_colour_blend(config, tmp_path, random):
-    """From a miss on, every ray shows the background; the mirrors before a ray set its weight."""
+def test_colour_blend(config, leaf_of, random):
     rays, record = config.reflections + 1, seen_of(config)
-    leaf = leaf_of(colour_blend, tmp_path, config, seen=rays * len(record.word))
-    stimulus, expected = [], []
+    leaf = leaf_of(colour_blend, config, seen=rays * len(record.word))
     latency, background, reflections = blend_latency(config), 0x123456, 0
     for number in range(3000):
         if number % 100 == 0:
@@ -37,10 +35,8 @@ def test_colour_blend(config, tmp_path, random):
         mirrors = [int(random.integers(5)) if mixes(config) else 2 for _ in found]
         rows = zip(found, mirrors, colours, strict=True)
         fields = [dict(zip(("found", "mirror", "colour"), one, strict=True)) for one in rows]
-        stimulus.append({
-            "picture_background": background, "picture_reflections": reflections,
-            "seen": sum(record.pack(one) << i * len(record.word) for i, one in enumerate(fields)),
-        })  # fmt: skip
+        word = sum(record.pack(one) << i * len(record.word) for i, one in enumerate(fields))
+        leaf.case({"picture_background": background, "picture_reflections": reflections, "seen": word})
         seen = [colour if all(found[: i + 1]) else background for i, colour in enumerate(colours)]
         pixel = []
         for low in (16, 8, 0):
@@ -50,5 +46,5 @@ def test_colour_blend(config, tmp_path, random):
                 value = ((4 - quarters) * own + quarters * value) / 4
             pixel.append(value)
         # For the last cases of a background, it has changed on the way.
-        expected.append(pixel_ports(config, pixel) if number % 100 < 100 - latency else None)
-    check(leaf, driven(leaf, stimulus), expected, latency)
+        leaf.expect(pixel_ports(config, pixel), when=number % 100 < 100 - latency)
+    leaf.check(latency, spare=True)

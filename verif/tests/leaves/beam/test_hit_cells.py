@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `hit_cells`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`hit_cells`: points on planes of all axes, many exactly at a cell's edge; without a hit, outputs are don't care."""
 
 from fractions import Fraction
 from math import gcd
 
 import numpy as np
-import pytest
 from beam_vectors import beam_config, beam_rays, image_of, seen_from
-from vectors import LAST, any_place, by_axis, check, designs, leaf_of, named
+from vectors import LAST, any_place, by_axis, designs, named
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.engines.beam import CELL_LATENCY, CELL_SLOPE_AT
@@ -42,20 +41,17 @@ def to_edge(random: np.random.Generator, config: Configuration, axis: int, plane
     return found
 
 
-@pytest.mark.slow_sets("beam-tiny48-s2-u1-r12-m0", "beam-vga180")
 @designs(
     beam_config(screen="tiny", patterns=True, reflections=0),
     beam_config(patterns=True, rows=180),
     beam_config(screen="tiny", patterns=True, turn=True, reflections=2),
     beam_config(screen="tiny", patterns=True, reflections=4),
+    slow=["beam-tiny48-s2-u1-r12-m0", "beam-vga180"],
 )
-def test_hit_cells(config, tmp_path, random):
-    """Points on planes of all axes, many exactly at a cell's edge; without a hit the outputs are don't care."""
-    latency, slope_bits = CELL_LATENCY, exact_slope_bits(config)
-    ports = {"camera": Point, "slope": lambda: Direction(slope_bits + 1), "sight": lambda: Sight(index_bits(config))}
-    leaf = leaf_of(hit_cells, tmp_path, config, **ports)
-    stimulus, expected = [{} for _ in range(4000)], {}
-    cycle = 0
+def test_hit_cells(config, leaf_of, random):
+    slopes = {"slope": lambda: Direction(exact_slope_bits(config) + 1)}
+    leaf = leaf_of(hit_cells, config, **slopes, camera=Point, sight=lambda: Sight(index_bits(config)))
+    leaf.stimulus, cycle = [{} for _ in range(4000)], 0
     for table, chosen, camera, ray, mirrors in beam_rays(random, config, 1200):
         for index in 8 * list(chosen):
             axis, plane, slope = int(table.axes[index]), any_place(random), ray
@@ -71,16 +67,16 @@ def test_hit_cells(config, tmp_path, random):
             if n <= 0 or not 0 <= plane < WORLD_SIZE:
                 continue
             point = [Fraction(int(eye[c]) * e + int(turned[c]) * n, e) for c in (u, v)]
-            if not all(0 <= coordinate <= LAST for coordinate in point) or cycle + latency >= len(stimulus):
+            if not all(0 <= coordinate <= LAST for coordinate in point) or cycle + CELL_LATENCY >= leaf.cycle:
                 continue
             cell, number = int(random.integers(6)), int(random.integers(config.rectangles))
             fields = {"valid": 1, "numerator": n, "denominator": e, "axis": axis, "cell": cell}
-            stimulus[cycle] |= named("nearest", fields) | {"winner_valid": 1, "winner_index": number}
-            stimulus[cycle + 1] |= named("image", image_of(camera, slope, mirrors)) | by_axis("camera_", camera)
-            stimulus[cycle + CELL_SLOPE_AT] |= by_axis("slope_", slope)
+            leaf.stimulus[cycle] |= named("nearest", fields) | {"winner_valid": 1, "winner_index": number}
+            leaf.stimulus[cycle + 1] |= named("image", image_of(camera, slope, mirrors)) | by_axis("camera_", camera)
+            leaf.stimulus[cycle + CELL_SLOPE_AT] |= by_axis("slope_", slope)
             odd_u, odd_v = (int(coordinate // (8 << cell)) % 2 for coordinate in point)
-            expected[cycle + latency] = {"sight_valid": 1, "sight_odd_u": odd_u, "sight_odd_v": odd_v,
-                                         "sight_index": number}  # fmt: skip
+            sight = {"valid": 1, "odd_u": odd_u, "odd_v": odd_v, "index": number}
+            leaf.expected[cycle + CELL_LATENCY] = named("sight", sight)
             cycle += 1
-    assert len(expected) > 400
-    check(leaf, stimulus, expected, settled=1 + latency)
+    assert len(leaf.expected) > 400
+    leaf.check(settled=1 + CELL_LATENCY)

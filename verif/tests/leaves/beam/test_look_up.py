@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `look_up`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf test of `look_up`: each rectangle's look, with the cell's colour if it has a pattern; kept between steps."""
 
 import pytest
 from beam_vectors import any_facets, beam_config
-from vectors import check, leaf_of, named
+from vectors import named
 
 from raycaster.rtl.beam.look_up import look_up
 from raycaster.rtl.common.records import Sight, winner_of
@@ -11,18 +11,16 @@ from raycaster.rtl.common.widths import index_bits
 
 
 @pytest.mark.parametrize("looks", [{}, {"materials": True, "patterns": True}], ids=["plain", "looks"])
-def test_look_up(looks, tmp_path, random):
-    """Each rectangle's look, with the cell's colour if it has a pattern; kept between steps."""
+def test_look_up(looks, leaf_of, random):
     config = beam_config(screen="tiny", rectangles=5, **looks)
     sights = {"sight": lambda: Sight(index_bits(config)) if config.patterns else winner_of(config)}
-    leaf = leaf_of(look_up, tmp_path, config, **sights)
-    stimulus, expected, kept = [], [], None
+    leaf = leaf_of(look_up, config, **sights)
+    kept = None
     for _ in range(400):
         facets, side_by_side = any_facets(random, config)
         sight = {"valid": int(random.integers(2)), "index": int(random.integers(config.rectangles))}
         sight |= {name: int(random.integers(2)) for name in ("odd_u", "odd_v") if config.patterns}
         step = int(random.random() < 0.8) if kept else 1
-        stimulus.append({"step": step, "facets": side_by_side} | named("sight", sight))
         if step:
             facet = facets[sight["index"]]
             kept = {"seen_found": sight["valid"], "seen_colour": facet["colour"]}
@@ -32,5 +30,5 @@ def test_look_up(looks, tmp_path, random):
                 kept["seen_colour"] = facet["colour_2" if second else "colour"]
             if config.materials:
                 kept["seen_mirror"] = facet["mirror"]
-        expected.append(kept)
-    check(leaf, stimulus, expected, latency=1)
+        leaf.case({"step": step, "facets": side_by_side} | named("sight", sight), kept)
+    leaf.check(latency=1)

@@ -1,23 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `nearest_of`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf test of `nearest_of`: the first of the nearest candidates, for any count; even a single one takes a round."""
 
 import pytest
 from beam_vectors import CANDIDATE, any_candidate, beam_config, close_candidates, first_of
-from vectors import check, leaf_of
 
 from raycaster.rtl.beam.nearest_of import nearest_of
 from raycaster.rtl.common.records import candidate_of
 
 
 @pytest.mark.parametrize(("count", "contest"), [(1, 2), (2, 2), (3, 2), (5, 2), (8, 2), (12, 2), (1, 3), (7, 3)])
-def test_nearest_of(count, contest, tmp_path, random):
-    """The first of the nearest candidates, for any count; even a single one takes a round."""
+def test_nearest_of(count, contest, leaf_of, random):
     config = beam_config(rectangles=count)
     rounds = max(1, (count - 1).bit_length())
     record = candidate_of(config)
     bits = len(record.word)
-    leaf = leaf_of(nearest_of, tmp_path, config, candidates=count * bits, rounds=rounds, latency=contest)
-    stimulus, expected = [], []
+    leaf = leaf_of(nearest_of, config, candidates=count * bits, rounds=rounds, latency=contest)
     for _ in range(1200):
         # Often only a few are valid, so that each is the nearest often enough.
         share = random.choice([0.2, 0.5, 1])
@@ -30,6 +27,6 @@ def test_nearest_of(count, contest, tmp_path, random):
             for place, one in zip(places, close_candidates(random, config), strict=True):
                 field[place] = one
         words = [record.pack(dict(zip(CANDIDATE, one, strict=True))) for one in field]
-        stimulus.append({"candidates": sum(word << place * bits for place, word in enumerate(words))})
-        expected.append(first_of(config, field))
-    check(leaf, stimulus, expected, rounds * contest)
+        leaf.case({"candidates": sum(word << place * bits for place, word in enumerate(words))})
+        leaf.expect(first_of(config, field))
+    leaf.check(rounds * contest)

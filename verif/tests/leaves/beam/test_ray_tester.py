@@ -1,20 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_tester`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`ray_tester`: a ray every few cycles; its walk comes a cycle later, its slope one or two cycles later."""
 
-import pytest
-from beam_vectors import by_screen, check_tester
+from beam_vectors import BY_SCREEN, check_tester
+from vectors import designs
 
 from raycaster.rtl.beam.ray_tester import ray_tester
 
+QUICK = [
+    "beam-tiny48-s2-u1-r12-m2-c8-turn",
+    "beam-vga180-s6-u2-r12-m1-c8",
+    "beam-vga240-s2-u1-r12-m2-c8-turn-materials-patterns",
+]
 
-@pytest.mark.slow_sets(
-    quick=[
-        "beam-tiny48-s2-u1-r12-m2-c8-turn",
-        "beam-vga180-s6-u2-r12-m1-c8",
-        "beam-vga240-s2-u1-r12-m2-c8-turn-materials-patterns",
-    ]
-)
-@by_screen
-def test_ray_tester(config, tmp_path, random):
-    """A ray every few cycles; its walk comes a cycle later, its slope's magnitudes one or two cycles later."""
-    check_tester(ray_tester, config, tmp_path, random)
+
+@designs(*BY_SCREEN, quick=QUICK)
+def test_ray_tester(config, leaf_of, random):
+    check_tester(leaf_of, ray_tester, config, random)

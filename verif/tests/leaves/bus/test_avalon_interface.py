@@ -1,39 +1,30 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `avalon_interface`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`avalon_interface`: any transfers, resets and counts of cycles; all outputs are those of the register model."""
 
-import pytest
 from scene_vectors import EVERY_BIT, sized
-from vectors import check, leaf_of
+from vectors import designs
 
 from raycaster.registers import address_bits
 from raycaster.rtl.bus.avalon_interface import avalon_interface
-from raycaster.rtl.common.interfaces import AvalonPort, SceneBus
+from raycaster.rtl.common.interfaces import AvalonPort
 from raycaster.rtl.common.widths import CYCLE_BITS, WORD_BITS
 from raycaster.sim.register_model import Agent
 
 
-@pytest.mark.parametrize(
-    "config",
-    [
-        sized(12),
-        sized(1, reflections=0, fraction_bits=8, rounding="nearest", divider_bits=3, colour_bits=4),
-        sized(32, reflections=2, units=320, rows=200),
-        sized(2, engine="exact", turn=True, patterns=True),
-        sized(2, engine="beam", materials=True),
-    ],
-    ids=lambda config: config.name,
+@designs(
+    sized(12),
+    sized(1, reflections=0, fraction_bits=8, rounding="nearest", divider_bits=3, colour_bits=4),
+    sized(32, reflections=2, units=320, rows=200),
+    sized(2, engine="exact", turn=True, patterns=True),
+    sized(2, engine="beam", materials=True),
 )
-def test_avalon_interface(config, tmp_path, random):
-    """Any transfers, resets and counts of cycles; all outputs are those of the register model."""
+def test_avalon_interface(config, leaf_of, random):
     width = address_bits(config.rectangles)
-    ports = {"avs_s0": lambda: AvalonPort(width), "bus": lambda: SceneBus(width)}
-    ports |= dict.fromkeys(("camera_readback", "rect_readback"), WORD_BITS)
-    leaf, agent = leaf_of(avalon_interface, tmp_path, config, **ports), Agent(config)
+    words = dict.fromkeys(("camera_readback", "rect_readback"), WORD_BITS)
+    leaf, agent = leaf_of(avalon_interface, config, avs_s0=lambda: AvalonPort(width), **words), Agent(config)
     registers = [register.address for name, register in agent.registers.items() if "rectangle" not in name]
     control = agent.registers["control"]
-    stimulus, expected = [], []
-    row = group = 0
-    committing = False
+    row, group, committing = 0, 0, False
     for cycle in range(7500):
         # Counts mostly stay near the previous ones, a little above or below.
         row, group = (max(0, value + int(random.integers(-9, 10))) % (1 << CYCLE_BITS) for value in (row, group))
@@ -52,8 +43,8 @@ def test_avalon_interface(config, tmp_path, random):
         inputs = {
             "reset": int(cycle < 2 or (busy_bus and reset)),
             "avs_s0_address": address,
-            "avs_s0_read": int(transfer == "read"),
-            "avs_s0_write": int(transfer == "write"),
+            "avs_s0_read": transfer == "read",
+            "avs_s0_write": transfer == "write",
             "avs_s0_writedata": data,
             "avs_s0_byteenable": int(random.choice([0, 1, 2, 4, 8, 15, 15, 15])),
             "camera_readback": int(random.integers(1 << WORD_BITS)),
@@ -65,8 +56,8 @@ def test_avalon_interface(config, tmp_path, random):
             "progress_row_cycles": row,
             "progress_group_cycles": group,
         }
-        expected.append(agent.outputs(inputs) | {"avs_s0_waitrequest": cycle and stimulus[-1]["reset"]})
-        stimulus.append(inputs)
+        waits = cycle and leaf.stimulus[-1]["reset"]
+        leaf.case(inputs, agent.outputs(inputs) | {"avs_s0_waitrequest": waits})
         agent.clock(inputs)
-    assert set(leaf.seen) == set(expected[0])
-    check(leaf, stimulus, expected, settled=1)
+    assert set(leaf.seen) == set(leaf.expected[0])
+    leaf.check(settled=1)

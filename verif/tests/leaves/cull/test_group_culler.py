@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `group_culler`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf tests of `group_culler`."""
 
 from collections.abc import Sequence
 
@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 from cull_vectors import culling_designs, hit_mask, scenes, with_edges_on_rays
 from fates import margin_of, may_hit_mask
-from vectors import by_axis, check, leaf_of
+from vectors import by_axis
 
 from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
 from raycaster.engines.engine import SETUP_LATENCY
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.common.records import Point
 from raycaster.rtl.cull.group_culler import group_culler
 from raycaster.verif.expected import sorted_rect
 
@@ -86,14 +85,12 @@ def any_start(random: np.random.Generator, rows: int, groups: int) -> tuple[int,
 
 @pytest.mark.slow_sets("seed-vga240-u1-", "seed-vga240-u320")
 @culling_designs
-def test_group_culler(config, tmp_path, random):
+def test_group_culler(config, leaf_of, random):
     """A frame's first group, then others in order and out of order, with enough or too little time to look ahead."""
-    ports = {"camera": Point, "may_hit": config.rectangles}
-    leaf = leaf_of(group_culler, tmp_path, config, **ports)
+    leaf = leaf_of(group_culler, config)
     count, groups, rows = config.rectangles, config.groups, config.screen_geometry.rows
     latency = config.facts.rect_latency
-    every = (1 << count) - 1
-    stimulus, expected, fates = [], {}, set()
+    every, fates = (1 << count) - 1, set()
 
     # Faults are planted in the design with one unit; the others show that other sizes work too.
     some = 1500 if config.units == 1 else 200
@@ -112,22 +109,22 @@ def test_group_culler(config, tmp_path, random):
             assert hit_mask(config, table, camera, *place) & ~answer == 0
             fates.add((known, predicted == place, answer == every))
             # The second cycle of reset, then the group; its answer holds until the first cycle of the next reset.
-            stimulus.append({**here, "reset_ray_caster": 1})
-            begun = len(stimulus)
-            stimulus += [here, {**here, "start_group": 1}]
+            leaf.case({**here, "reset_ray_caster": 1})
+            begun = leaf.cycle
+            leaf.stimulus += [here, {**here, "start_group": 1}]
             for index in range(count) if number == 0 else ():
-                stimulus.append({**here, **any_rect(random, shown), "rects_fetch": 1, "rects_index": index})
-                stimulus += [{**here, **any_rect(random, shown)}] * (latency - 1)
-                stimulus.append({**here, **any_rect(random, shown), **shown[index]})
+                leaf.case({**here, **any_rect(random, shown), "rects_fetch": 1, "rects_index": index})
+                leaf.stimulus += [{**here, **any_rect(random, shown)}] * (latency - 1)
+                leaf.case({**here, **any_rect(random, shown), **shown[index]})
             time = count + SETUP_LATENCY + int(random.integers(3))
             if random.random() < 0.05:
                 time = int(random.integers(3, count + SETUP_LATENCY))
             # Values on the table's port that were not fetched must be ignored.
-            stimulus += [{**here, **any_rect(random, shown)} for _ in range(time - 1)]
+            leaf.stimulus += [{**here, **any_rect(random, shown)} for _ in range(time - 1)]
             # A frame that is abandoned before its first group is done leaves no rectangles known.
             abandoned = random.random() < 0.05
-            stimulus.append({**here, "reset_ray_caster": 1, "done": int(not abandoned)})
-            expected |= {cycle: {"may_hit": answer} for cycle in range(begun, len(stimulus))}
+            leaf.case({**here, "reset_ray_caster": 1, "done": int(not abandoned)})
+            leaf.expected |= {cycle: {"may_hit": answer} for cycle in range(begun, leaf.cycle)}
 
             following = (place[0], place[1] + 1) if place[1] < groups - 1 else (place[0] + 1, 0)
             predicted = following if known and time >= count + SETUP_LATENCY else None
@@ -139,5 +136,5 @@ def test_group_culler(config, tmp_path, random):
                 # Jump to just before the groups with the rectangles' edges.
                 place = start[0] if start[1] else start[0] - 1, (start[1] - 1) % groups
                 place = (1, 0) if place == (0, 0) else place
-    check(leaf, stimulus, expected, settled=min(expected))
+    leaf.check(settled=min(leaf.expected))
     assert {(True, True, False), (True, False, True), (False, False, True)} <= fates

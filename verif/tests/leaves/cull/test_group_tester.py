@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `group_tester`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`group_tester`: any products, with each comparison decided by its last bit, another single bit, or the sign."""
 
 import numpy as np
 import pytest
 from cull_vectors import culling_designs
-from vectors import leaf_of, named, plain
+from vectors import named
 
 from raycaster.hdl.signals import Signed
 from raycaster.rtl.common.records import Facet, Walk
@@ -14,16 +14,16 @@ from raycaster.rtl.cull.group_tester import group_tester
 
 @pytest.mark.slow_sets(quick=["exact-vga240-u64", "seed-tiny48"])
 @culling_designs
-def test_group_tester_at_its_limits(config, tmp_path, random):
-    """Any products, with each comparison decided by its last bit, another single bit, or the sign."""
+def test_group_tester_at_its_limits(config, leaf_of, random):
     slopes_of = dict.fromkeys(("column_slope", "row_slope"), Signed(exact_slope_bits(config) + 1))
     ports = {"facet": lambda: Facet(walk_bits(config)), "growth": lambda: Walk(WIDE_BITS)}
-    ports |= {"start": lambda: Walk(wide_walk_bits(config)), "load": config.rectangles, "may_hit": config.rectangles}
-    leaf = leaf_of(group_tester, tmp_path, config, **ports, **slopes_of)
+    ports |= {"start": lambda: Walk(wide_walk_bits(config)), "load": config.rectangles}
+    leaf = leaf_of(group_tester, config, **ports, **slopes_of)
     units, far = config.units, 1 << wide_walk_bits(config) - 2
     slope_limit = 1 << exact_slope_bits(config) - 1
     # The first load makes all registers known.
-    stimulus, expected = [{"load": (1 << config.rectangles) - 1}], {}
+    leaf.case({"load": (1 << config.rectangles) - 1})
+    expected = {}
 
     def small() -> int:
         return int(random.choice([0, 1, 2, 1 << int(random.integers(far.bit_length() - 3))]) * random.choice([-1, 1]))
@@ -64,10 +64,10 @@ def test_group_tester_at_its_limits(config, tmp_path, random):
         inputs = {"facet_axis": axis, "facet_distance": distance, "facet_way_q": start.pop("way_q")}
         inputs |= {"column_slope": column_slope, "row_slope": row_slope}
         inputs |= named("start", start) | named("growth", growth)
-        index = len(stimulus) % config.rectangles
-        expected[len(stimulus) + 2] = index, not impossible
-        stimulus.append({**inputs, "load": 1 << index})
-    stimulus += [{"load": 0}] * 2
-    outputs = leaf.run_both(plain(stimulus), settled=3)
+        index = leaf.cycle % config.rectangles
+        expected[leaf.cycle + 2] = index, not impossible
+        leaf.case({**inputs, "load": 1 << index})
+    leaf.stimulus += [{"load": 0}] * 2
+    outputs = leaf.check(settled=3)
     for cycle, (index, may_hit) in expected.items():
-        assert outputs[cycle]["may_hit"] >> index & 1 == may_hit, stimulus[cycle - 2]
+        assert outputs[cycle]["may_hit"] >> index & 1 == may_hit, leaf.stimulus[cycle - 2]

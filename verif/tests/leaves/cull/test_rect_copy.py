@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `rect_copy`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`rect_copy`: fetches of both readers in any order; the second gets what the first got last, with the margin added."""
 
 import numpy as np
-import pytest
-from exact_vectors import exact_config
-from vectors import any_place, check, leaf_of, named
+from vectors import any_place, by, exact_config, named
 
 from raycaster.golden.world import Rectangles
 from raycaster.rtl.common.interfaces import Rects
@@ -13,10 +11,8 @@ from raycaster.rtl.cull.rect_copy import rect_copy
 from raycaster.verif.expected import sorted_rect
 
 
-@pytest.mark.parametrize("margin", [0, 1])
-@pytest.mark.parametrize("count", [1, 12, 32])
-def test_rect_copy(count, margin, tmp_path, random):
-    """Fetches of both readers in any order; the second gets what the first got last, with the margin added."""
+@by(count=[1, 12, 32], margin=[0, 1])
+def test_rect_copy(count, margin, leaf_of, random):
     config = exact_config(rectangles=count)
     latency = config.facts.rect_latency
 
@@ -25,8 +21,8 @@ def test_rect_copy(count, margin, tmp_path, random):
         copied.rect = WideRect()
         return copied
 
-    leaf = leaf_of(rect_copy, tmp_path, config, copy=copy, margin=margin)
-    stimulus, written, asked = [], [], []
+    leaf = leaf_of(rect_copy, config, copy=copy, margin=margin)
+    written, asked = [], []
     for cycle in range(600):
         fetch, index = int(cycle < count or random.random() < 0.3), cycle if cycle < count else random.integers(count)
         # Ask only for rectangles that were fetched long enough ago.
@@ -37,15 +33,16 @@ def test_rect_copy(count, margin, tmp_path, random):
         rect = sorted_rect(Rectangles(corners[None], np.zeros((1, 3), np.uint8), np.ones(1, bool)), 0, "rect")
         del rect["rect_colour"]
         wanted = int(random.integers(count))
-        stimulus.append({"rects_fetch": fetch, "rects_index": index, "copy_fetch": ask, "copy_index": wanted})
-        stimulus[-1] |= named("rects", rect)
+        fetches = {"rects_fetch": fetch, "rects_index": index, "copy_fetch": ask, "copy_index": wanted}
+        leaf.case(fetches | named("rects", rect))
         further = {"low": -margin, "high": margin}
         written.append(named("copy", {name: rect[name] + further.get(name.rpartition("_")[2], 0) for name in rect}))
         asked.append(wanted if ask else None)
-    memory, expected = {}, [None, None]
+    memory, shown = {}, {}
     for read, wanted in enumerate(asked[:-2]):
         # A rectangle that arrived in the cycle before can be read.
-        if read > latency and stimulus[read - 1 - latency]["rects_fetch"]:
-            memory[stimulus[read - 1 - latency]["rects_index"]] = written[read - 1]
-        expected.append(expected[-1] if wanted is None else memory[wanted])
-    check(leaf, stimulus, expected, settled=count + 8)
+        if read > latency and leaf.stimulus[read - 1 - latency]["rects_fetch"]:
+            memory[leaf.stimulus[read - 1 - latency]["rects_index"]] = written[read - 1]
+        shown = shown if wanted is None else memory[wanted]
+        leaf.expected[read + 2] = shown
+    leaf.check(settled=count + 8)

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_generator`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`ray_generator`: rays of whole rows and columns; some are not loaded, and the previous one must then stay."""
 
-from unit_vectors import unit_config
-from vectors import check, designs, leaf_of, slope_inputs
+from vectors import designs, slope_inputs, unit_config
 
 from raycaster.golden.rays import primary_slopes
 from raycaster.rtl.common.interfaces import Slope
@@ -17,20 +16,19 @@ from raycaster.screens import VIEW_DISTANCE
         ("vga", 200, 20), ("vga", 200, 64), ("tiny", 48, 1), ("tiny", 48, 16), ("tiny", 48, 64),
     )
 ))  # fmt: skip
-def test_ray_generator(config, tmp_path):
-    """Rays of whole rows and columns; some are not loaded, and the previous one must then stay."""
-    leaf = leaf_of(ray_generator, tmp_path, config, slope=Slope)
+def test_ray_generator(config, leaf_of):
+    leaf = leaf_of(ray_generator, config, slope=Slope)
     screen = config.screen_geometry
     rays = {(row, column) for row in (0, 1, screen.horizon_row, screen.rows - 1) for column in range(screen.columns)}
     rays |= {(row, column) for row in range(screen.rows) for column in (0, screen.centre_column, screen.columns - 1)}
-    slopes, stimulus, expected, shown = primary_slopes(screen), [], [], None
+    slopes, shown = primary_slopes(screen), None
     for number, (row, column) in enumerate(sorted(rays)):
         place = {"place_row": row, "place_column_offset": column // config.units, "column_base": column % config.units}
         for load in [1] if number % 8 == 0 else [0] if number % 8 == 1 else [0, 1]:
-            stimulus.append({**place, "steps_screen_to_ray": load})
+            leaf.case({**place, "steps_screen_to_ray": load}, shown)
             shown = slope_inputs(slopes[row, column], "initial_signs") if load else shown
-            expected.append(shown)
     assert shown["slope_dx"] == VIEW_DISTANCE
     # The counters stop one past their last value, where nothing may overflow.
     past = {"place_row": screen.rows, "place_column_offset": config.groups, "column_base": config.units - 1}
-    check(leaf, [*stimulus, past], [None, *expected], settled=1)
+    leaf.case(past, shown)
+    leaf.check(settled=1)

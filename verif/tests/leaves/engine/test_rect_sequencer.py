@@ -1,29 +1,22 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `rect_sequencer`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`rect_sequencer`: all, some or single rectangles; some tests end early, and some sequences with a reset."""
 
-import pytest
-from exact_vectors import exact_config
-from vectors import check, check_fetches, leaf_of
+from vectors import by, check_fetches, exact_config
 
-from raycaster.rtl.common.widths import index_bits
 from raycaster.rtl.engine.rect_sequencer import rect_sequencer
 
 
-@pytest.mark.parametrize("rect_cycles", [1, 3, 9])
-@pytest.mark.parametrize("count", [1, 5, 12])
-def test_rect_sequencer(count, rect_cycles, tmp_path, random):
-    """All, some or single rectangles; some tests end early, and some sequences with a reset."""
+@by(count=[1, 5, 12], rect_cycles=[1, 3, 9])
+def test_rect_sequencer(count, rect_cycles, leaf_of, random):
     config = exact_config(rectangles=count)
-    ports = {"wanted": count, "index": index_bits(config), "rect_cycles": lambda: rect_cycles}
-    leaf = leaf_of(rect_sequencer, tmp_path, config, **ports)
-    stimulus, expected, on_port = [], [], {}
+    leaf, on_port = leaf_of(rect_sequencer, config, wanted=count, rect_cycles=lambda: rect_cycles), {}
 
     def drive(reset, start, mask, current=None, first=False, early_out=0):
         """Add a cycle in which `current` is on the memory's port."""
         if current is not None:
-            on_port[len(stimulus)] = current
-        stimulus.append({"reset_ray_caster": reset, "start_ray": start, "wanted": mask, "early_out": early_out})
-        expected.append(None if reset else {"fetched": current is not None, "starting": first})
+            on_port[leaf.cycle] = current
+        leaf.case({"reset_ray_caster": reset, "start_ray": start, "wanted": mask, "early_out": early_out})
+        leaf.expect({"fetched": current is not None, "starting": first}, when=not reset)
 
     every = (1 << count) - 1
     for number in range(60):
@@ -47,5 +40,5 @@ def test_rect_sequencer(count, rect_cycles, tmp_path, random):
             drive(0, 0, mask, current, first, early_out)
         if number % 5 != 4:
             drive(0, 0, mask)
-    outputs = check(leaf, stimulus, expected, settled=4)
+    outputs = leaf.check(settled=4)
     check_fetches(outputs, on_port, "", settled=4)

@@ -1,29 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `cell_finder`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`cell_finder`: cells of points, computed with fractions: cells of every size, and points on cell borders."""
 
 from fractions import Fraction
 from math import gcd
 
-from exact_vectors import by_reflections, by_turn, exact_config
-from vectors import LAST, by_axis, check, leaf_of, slope_inputs
+from vectors import LAST, by_axis, by_reflections, by_turn, exact_config, slope_inputs
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.world import OTHER_AXES
-from raycaster.rtl.common.records import surface_of
-from raycaster.rtl.common.widths import exact_slope_bits, eye_bits
+from raycaster.rtl.common.widths import exact_slope_bits
 from raycaster.rtl.exact.cell_finder import cell_finder
 
 
 @by_turn
 @by_reflections
-def test_cell_finder(reflections, turn, tmp_path, random):
-    """Cells of points, computed with fractions: cells of every size, and points on cell borders."""
+def test_cell_finder(reflections, turn, leaf_of, random):
     config = exact_config(reflections=reflections, turn=turn, patterns=True)
-    found = {"found_surface": lambda: surface_of(config), "found_distance": eye_bits(config) - 1}
-    leaf = leaf_of(cell_finder, tmp_path, config, **found, found_slope=exact_slope_bits(config))
-    stimulus, expected, borders = [], {}, 0
+    leaf, borders = leaf_of(cell_finder, config), 0
     far, steepest = LAST * (reflections + 1), (1 << exact_slope_bits(config)) - 1
-    while len(expected) < 300:
+    while len(leaf.expected) < 300:
         axis, size = int(random.integers(3)), int(random.integers(8))
         n = int(random.choice([1, 8, far, random.integers(1, far + 1)]))
         e = int(random.choice([1, 2, min(n, steepest), steepest, random.integers(1, steepest + 1)]))
@@ -44,8 +39,7 @@ def test_cell_finder(reflections, turn, tmp_path, random):
         held = {"found_surface_axis": axis, "found_surface_cell": size, "found_distance": n, "found_slope": e}
         held |= by_axis("eye_", eye) | slope_inputs(slope)
         for cycle in range(7):
-            stimulus.append({**held, "steps_load_divider": cycle == 0, "steps_store_quotient": cycle == 3})
-        odd_u, odd_v = (int(cell) % 2 for cell in cells)
-        expected[len(stimulus) - 1] = {"odd_u": odd_u, "odd_v": odd_v}
-    check(leaf, stimulus, expected, settled=6)
+            leaf.case({**held, "steps_load_divider": cycle == 0, "steps_store_quotient": cycle == 3})
+        leaf.expect({"odd_u": int(cells[0]) % 2, "odd_v": int(cells[1]) % 2})
+    leaf.check(settled=6)
     assert borders > 30

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `extent_tester`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`extent_tester`: rays that meet the plane before, at and beyond the bounds and the mirror, by fractions."""
 
 from fractions import Fraction
 
 import numpy as np
-from exact_vectors import by_reflections, exact_config
-from vectors import LAST, check, leaf_of
+from vectors import LAST, by_reflections, exact_config
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.hdl.signals import Signed
@@ -14,15 +13,13 @@ from raycaster.rtl.exact.extent_tester import extent_tester
 
 
 @by_reflections
-def test_extent_tester(reflections, tmp_path, random):
-    """Rays that meet the plane before, at and beyond the bounds and the mirror, computed with fractions."""
+def test_extent_tester(reflections, leaf_of, random):
     config = exact_config(reflections=reflections)
     eye_width, slope_bits = eye_bits(config), exact_slope_bits(config)
     widths = {"low": 9, "high": 9, "eye": Signed(eye_width), "slope": slope_bits}
     widths |= {"mirror_distance": eye_width - 1, "n": eye_width - 1, "e": slope_bits}
+    leaf, late, seen = leaf_of(extent_tester, **widths), {}, set()
     far, steepest = LAST * (reflections + 1), (1 << slope_bits) - 1
-    stimulus, late, seen = [], {}, set()
-    expected = [{} for _ in range(6002)]
     for cycle in range(6000):
         low, high = sorted(int(random.choice([0, 1, LAST, random.integers(WORLD_SIZE)])) for _ in range(2))
         eye = int(random.choice([0, LAST, far, far - LAST, LAST - far, random.integers(LAST - far, far + 1)]))
@@ -38,17 +35,16 @@ def test_extent_tester(reflections, tmp_path, random):
             e, n = slope, goal
         n = int(np.clip(n, 1, (1 << eye_width - 1) - 1))
         step = int(cycle == 0 or random.random() < 0.9)
-        stimulus.append(late | {
-            "step": step, "low": low, "high": high, "eye": eye, "back": back, "slope": slope, "on_mirror": on_mirror,
-        })  # fmt: skip
+        bounds = {"low": low, "high": high, "eye": eye, "back": back, "slope": slope}
+        leaf.case({**late, **bounds, "step": step, "on_mirror": on_mirror}, {"ahead": beyond >= 0})
         mirror = min(mirror, (1 << eye_width - 1) - 1)
         late = {"mirror_distance": mirror, "n": n, "e": e}
-        expected[cycle]["ahead"] = beyond >= 0
         if step and beyond >= 0:
             at = Fraction(slope * n, e)
             behind_mirror = on_mirror and near <= mirror and at < mirror
             between, in_mirror = near <= at <= beyond and not behind_mirror, on_mirror and near <= mirror == at
-            expected[cycle + 2] |= {"between": between, "in_mirror": in_mirror}
+            leaf.expected[cycle + 2] |= {"between": between, "in_mirror": in_mirror}
             seen |= {bool(between), bool(in_mirror)}
     assert seen == {False, True}
-    check(leaf_of(extent_tester, tmp_path, **widths), [*stimulus, late, {}], expected, settled=2)
+    leaf.stimulus += [late, {}]
+    leaf.check(settled=2)

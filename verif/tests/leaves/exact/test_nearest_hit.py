@@ -1,26 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `nearest_hit`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf test of `nearest_hit`: hits nearer than the nearest, as near in the same or other terms, and next to it."""
 
 from fractions import Fraction
 
-from exact_vectors import by_reflections, by_turn, exact_config
-from vectors import check, leaf_of, named
+from vectors import by_reflections, by_turn, exact_config, named
 
-from raycaster.rtl.common.records import Surface
 from raycaster.rtl.common.widths import exact_slope_bits, eye_bits
 from raycaster.rtl.exact.nearest_hit import nearest_hit
 
 
 @by_turn
 @by_reflections
-def test_nearest_hit(reflections, turn, tmp_path, random):
-    """Hits nearer than the nearest, as near in the same or other terms, and next to it."""
+def test_nearest_hit(reflections, turn, leaf_of, random):
     config = exact_config(reflections=reflections, turn=turn)
     numerator_bits, denominator_bits = eye_bits(config) - 1, exact_slope_bits(config)
-    terms = {"numerator": numerator_bits, "denominator": denominator_bits}
-    found = {"found_surface": Surface, "found_distance": numerator_bits, "found_slope": denominator_bits}
-    leaf = leaf_of(nearest_hit, tmp_path, **terms, **found, offered=Surface)
-    stimulus, expected = [{"steps_reset_z_buf": 1}], [None]
+    leaf = leaf_of(nearest_hit, config)
+    leaf.case({"steps_reset_z_buf": 1})
     best, kept, settled = None, {}, None
     for _ in range(12000):
         reset, write, hit = (int(random.random() < chance) for chance in (0.1, 0.8, 0.6))
@@ -41,17 +36,16 @@ def test_nearest_hit(reflections, turn, tmp_path, random):
             n = min(max(n + int(random.integers(-1, 2)), 1), (1 << numerator_bits) - 1)
         offered = {"axis": random.integers(3), "position": random.integers(512), "colour": random.integers(1 << 24)}
         at_mirror = random.integers(2)
-        stimulus.append(named("offered", offered) | {
-            "steps_reset_z_buf": reset, "steps_write_z_buf": write, "hit": hit, "numerator": n, "denominator": e,
-            "at_mirror": at_mirror,
-        })  # fmt: skip
-        expected.append({"found": best is not None} | (kept if best is not None else {}))
+        steps = {"steps_reset_z_buf": reset, "steps_write_z_buf": write}
+        terms = {"numerator": n, "denominator": e, "at_mirror": at_mirror}
+        leaf.case({**named("offered", offered), **steps, **terms, "hit": hit}, {"found": best is not None})
+        leaf.expect(kept, when=best is not None)
         if reset:
             best = None
         elif write and hit and (best is None or Fraction(n, e) < best):
             best = Fraction(n, e)
             kept = named("found_surface", offered)
             kept |= {"found_distance": n, "found_slope": e, "found_at_mirror": at_mirror}
-            settled = settled or len(stimulus)
-    outputs = check(leaf, stimulus, expected, settled=settled)
+            settled = settled or leaf.cycle
+    outputs = leaf.check(settled=settled)
     assert not any(output["found"] for output in outputs[1:settled])

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `rect_tester`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf tests of `rect_tester`."""
 
 from itertools import chain, product
 
 import numpy as np
-from exact_vectors import by_reflections, by_turn, exact_config
 from hard_scenes import sharpened, verdict
-from vectors import LAST, by_axis, check, driven, leaf_of, named, slope_inputs
+from vectors import LAST, by_axis, by_reflections, by_turn, exact_config, named, slope_inputs
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
@@ -71,36 +70,35 @@ def extreme_rays(config: Configuration):
 
 @by_turn
 @by_reflections
-def test_rect_tester(reflections, turn, tmp_path, random):
+def test_rect_tester(reflections, turn, leaf_of, random):
     """The hit and its t; after two mirrors in one point, also hits in that point and at_mirror."""
     config = exact_config(reflections=reflections, turn=turn)
-    terms = {"numerator": eye_bits(config) - 1, "denominator": exact_slope_bits(config)}
-    leaf = leaf_of(rect_tester, tmp_path, config, rect=Rect, **terms)
-    stimulus, expected, distance, seen, corners = [], [], 0, set(), set()
+    leaf = leaf_of(rect_tester, config, rect=Rect)
+    distance, seen, corners = 0, set(), set()
     for table, chosen, eye, slope, mirror in chain(mirrored_rays(random, config, 1500), extreme_rays(config)):
         met = {mirror[0]} if mirror else set()
         if mirror and reflections > 1 and random.random() < 0.5:
             met |= set(random.choice(3, int(random.integers(3))).tolist())
         ray = by_axis("eye_", eye) | slope_inputs(slope) | by_axis("mirror_met_", (axis in met for axis in range(3)))
         for index in chosen:
-            started = int(not stimulus or random.random() < 0.9)
+            started = int(not leaf.stimulus or random.random() < 0.9)
             mirrors = {"active": mirror is not None, "axis": mirror[0] if mirror else int(random.integers(3))}
-            stimulus.append({
-                **ray, **sorted_rect(table, index, "rect"), **named("mirror", mirrors), "mirror_distance": distance,
-                "steps_find_intersection": started,
-            })  # fmt: skip
+            mirrors["distance"] = distance
+            inputs = ray | sorted_rect(table, index, "rect") | named("mirror", mirrors)
+            leaf.case({**inputs, "steps_find_intersection": started})
             # The mirror distance is read a cycle after all other inputs.
             distance = abs(int(mirror[1] - eye[mirror[0]])) if mirror else int(random.integers(WORLD_SIZE))
             hit, n, e, at_mirror = verdict(table, index, eye, slope, mirror, met)
-            wanted = {"hit": hit} | ({"numerator": n, "denominator": e, "at_mirror": at_mirror} if hit else {})
-            expected.append(wanted if started else None)
+            leaf.expect({"hit": hit}, when=started)
+            leaf.expect({"numerator": n, "denominator": e, "at_mirror": at_mirror}, when=started and hit)
             if started:
                 corners.add(at_mirror)
                 seen.add((hit, int(table.axes[index]), mirror is not None))
     assert len(seen) == (12 if reflections else 6), "hits and misses on each axis, with a mirror and without"
     assert corners == {False, reflections > 0}, "hits in the mirror's plane and beyond it"
     idle = {"mirror_distance": distance, "steps_find_intersection": 0}
-    check(leaf, driven(leaf, [*stimulus, *[idle] * LATENCY]), expected + [None] * LATENCY, LATENCY)
+    leaf.stimulus += [idle] * LATENCY
+    leaf.check(LATENCY, spare=True)
 
 
 @by_turn

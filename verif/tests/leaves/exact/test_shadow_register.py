@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `shadow_register`: a hit between the light and a point, compared with fractions."""
+"""`shadow_register`: hits before, at and beyond the point, and next to it by one unit of either product."""
 
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from vectors import check, leaf_of
 
 from raycaster.configuration import WORLD_SIZE, configure
 from raycaster.engines.exact import AIM_CYCLES
-from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, light_slope_bits
+from raycaster.rtl.common.widths import exact_slope_bits, light_slope_bits
 from raycaster.rtl.exact.shadow_register import shadow_register
 
 CYCLES = 2000
@@ -17,14 +16,11 @@ LAST_AIM = 1 << AIM_CYCLES - 1
 
 
 @pytest.mark.parametrize("turn", [False, True], ids=["not turned", "turned"])
-def test_shadow_register(turn, tmp_path, random):
-    """Hits before, at and beyond the point, and next to it by one unit of either product."""
+def test_shadow_register(turn, leaf_of, random):
     config = configure(engine="exact", turn=turn, light=True)
-    widths = {"numerator": eye_bits(config) - 1, "denominator": light_slope_bits(config)}
-    leaf = leaf_of(shadow_register, tmp_path, config, **widths, found_slope=exact_slope_bits(config))
+    leaf = leaf_of(shadow_register, config, denominator=light_slope_bits(config))
     steepest, most = (1 << exact_slope_bits(config)) - 1, (1 << light_slope_bits(config)) - 1
-    stimulus, expected, shaded, looking, kinds = [], [], None, None, set()
-    e = 1
+    shaded, looking, kinds, e = None, None, set(), 1
     for cycle in range(CYCLES):
         starts = cycle == 0 or random.random() < 0.2
         if starts:
@@ -35,13 +31,9 @@ def test_shadow_register(turn, tmp_path, random):
         hit, write = int(random.random() < 0.4), int(not starts and random.random() < 0.5)
         aim = 1 if starts else int(random.choice([0, 0, 2, 4, LAST_AIM]))
         over, asked = int(cycle == 0 or random.random() < 0.2), int(random.random() < 0.5)
-        stimulus.append(
-            {
-                "steps_aim": aim, "steps_reset_z_buf": over, "steps_write_shadow": write, "in_question": asked,
-                "hit": hit, "numerator": n, "denominator": denominator, "found_slope": e,
-            }
-        )  # fmt: skip
-        expected.append({"shaded": shaded, "looking": looking})
+        steps = {"steps_aim": aim, "steps_reset_z_buf": over, "steps_write_shadow": write, "in_question": asked}
+        terms = {"hit": hit, "numerator": n, "denominator": denominator, "found_slope": e}
+        leaf.case(steps | terms, {"shaded": shaded, "looking": looking})
         if over:
             looking = 0
         elif aim == LAST_AIM:
@@ -52,5 +44,5 @@ def test_shadow_register(turn, tmp_path, random):
             between = Fraction(n, denominator) < Fraction(1, e)
             kinds.add((between, n * e - denominator if abs(n * e - denominator) < 2 else None))
             shaded |= int(between)
-    check(leaf, stimulus, expected, settled=1)
+    leaf.check(settled=1)
     assert {(True, -1), (False, 0), (False, 1)} <= kinds

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `shadow_sequencer`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf test of `shadow_sequencer`: passes of any length and outcome.
 
-from vectors import check, leaf_of
+Nothing is in question, or it is decided early, or it is tested to the last rectangle. traced is not read in the cycles
+of aim.
+"""
 
 from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.exact.shadow_sequencer import shadow_sequencer
@@ -10,19 +12,14 @@ AIM = 4
 """Cycles in which a shadow ray is computed."""
 
 
-def test_shadow_sequencer(tmp_path, random):
-    """Passes of any length and outcome: nothing in question, decided early, or tested to the last rectangle.
-
-    traced is not read in the cycles of aim.
-    """
-    leaf = leaf_of(shadow_sequencer, tmp_path, shadow_pass=ShadowPass, aim=AIM)
+def test_shadow_sequencer(leaf_of, random):
+    leaf = leaf_of(shadow_sequencer, shadow_pass=ShadowPass, aim=AIM)
     names = ("aim", "from_light", *(f"shadow_pass_{name}" for name in ("awaited", "comes_next", "start", "stop")))
-    stimulus, expected = [], []
 
     def cycle(traced: int, question: int | None, *values: int, reset: int = 0) -> None:
         asked = int(random.integers(2)) if question is None else question
-        stimulus.append({"reset_ray_caster": reset, "shadow_pass_traced": traced, "any_in_question": asked})
-        expected.append(dict(zip(names, values, strict=True)))
+        leaf.case({"reset_ray_caster": reset, "shadow_pass_traced": traced, "any_in_question": asked})
+        leaf.expect(dict(zip(names, values, strict=True)))
 
     waiting = (0, 0, 1, 1, 0, 0)
     cycle(0, None, *waiting, reset=1)
@@ -53,5 +50,5 @@ def test_shadow_sequencer(tmp_path, random):
                 break
         else:
             outcomes.add("whole")
-    check(leaf, stimulus, expected, settled=1)
+    leaf.check(settled=1)
     assert outcomes == {"none", "decided", "whole"}

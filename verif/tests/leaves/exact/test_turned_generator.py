@@ -1,19 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `turned_generator`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`turned_generator`: place and camera come a cycle before the ray is loaded; without a load, nothing changes."""
 
 import numpy as np
-from exact_vectors import exact_config
-from vectors import basis_inputs, check, designs, leaf_of, slope_inputs
+from vectors import basis_inputs, designs, exact_config, slope_inputs
 
 from raycaster.golden.random_world import random_basis
 from raycaster.rtl.exact.turned_generator import turned_generator
 
 
 @designs(*(exact_config(turn=True, units=n, screen=screen) for n, screen in ((4, "vga"), (5, "vga"), (2, "tiny"))))
-def test_turned_generator(config, tmp_path, random):
-    """Place and camera come a cycle before the ray is loaded; a ray that is not loaded changes nothing."""
-    leaf, screen = leaf_of(turned_generator, tmp_path, config), config.screen_geometry
-    stimulus, expected, shown = [], [], None
+def test_turned_generator(config, leaf_of, random):
+    leaf, screen, shown = leaf_of(turned_generator, config), config.screen_geometry, None
     for number in range(500):
         basis = random_basis(random)
         row = int(random.choice([0, screen.horizon_row, screen.rows - 1, random.integers(screen.rows)]))
@@ -21,11 +18,11 @@ def test_turned_generator(config, tmp_path, random):
         load = int(number == 0 or random.random() < 0.8)
         held = {"place_row": row, "place_column_offset": column // config.units, "column_base": column % config.units}
         held |= basis_inputs(basis)
-        stimulus += [{**held, "steps_screen_to_ray": strobe} for strobe in (0, load)]
-        expected += [shown, shown]
+        for strobe in (0, load):
+            leaf.case({**held, "steps_screen_to_ray": strobe}, shown)
         if load:
             place = [screen.view_distance, column - screen.centre_column, screen.horizon_row - row]
             shown = slope_inputs(np.array(place) @ np.array(basis), "initial_signs")
     # The counters stop one past their last value, where nothing may overflow.
-    stimulus.append({**held, "place_row": screen.rows, "place_column_offset": config.groups})
-    check(leaf, stimulus, [*expected, shown], settled=2)
+    leaf.case({**held, "place_row": screen.rows, "place_column_offset": config.groups}, shown)
+    leaf.check(settled=2)

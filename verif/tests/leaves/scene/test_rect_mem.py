@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `rect_mem`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`rect_mem`: readback, the usable rectangles, and the sorted rectangle that was fetched, after any writes."""
 
 import numpy as np
 import pytest
 from scene_vectors import CYCLES, EVERY_BIT, label, random_bus, rectangle_words, sized
-from vectors import check, leaf_of
 
 from raycaster.registers import address_bits, register_map
-from raycaster.rtl.common.interfaces import SceneBus
 from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.sim.register_model import Table
@@ -58,7 +56,7 @@ def table_stimulus(random: np.random.Generator, table: Table, rectangles: int) -
             stimulus += [{**idle, "bus_address": address, "bus_data": 0} for address in addresses]
             stimulus[-2]["bus_commit"] = stimulus[-1]["bus_go_live"] = 1
             continue
-        for address, word in zip(written[size * slot : size * (slot + 1)], data, strict=False):
+        for address, word in zip(addresses, data, strict=False):
             bus = random_bus(random, [address] * 8 + [address ^ 1, int(random.integers(last))], word)
             stimulus.append({**bus, "reset": int(random.random() < 0.01)})
         stimulus.append({**random_bus(random, [int(random.integers(last))]), "reset": 0})
@@ -86,31 +84,28 @@ def fill_places(random: np.random.Generator, table: Table) -> list[dict[str, int
     ],
     ids=lambda value: label(value) if isinstance(value, dict) else str(value),
 )  # fmt: skip
-def test_rect_mem(rectangles, options, tmp_path, random):
-    """Readback, the usable rectangles, and the sorted rectangle that was fetched, after any writes."""
+def test_rect_mem(rectangles, options, leaf_of, random):
     config = sized(rectangles, **options)
     latency = config.facts.rect_latency
-    ports = {"bus": lambda: SceneBus(address_bits(rectangles)), "readback": WORD_BITS}
-    leaf = leaf_of(rect_mem, tmp_path, config, **ports)
-    table = Table(config)
+    leaf, table = leaf_of(rect_mem, config), Table(config)
     filling = fill_places(random, table)
-    stimulus = filling + table_stimulus(random, table, rectangles)
-    for cycle, inputs in enumerate(stimulus):
-        stimulus[cycle] = inputs | {
+    leaf.stimulus = filling + table_stimulus(random, table, rectangles)
+    for cycle, inputs in enumerate(leaf.stimulus):
+        leaf.stimulus[cycle] = inputs | {
             "rects_fetch": int(cycle < len(filling) or random.random() < 0.6),
             "rects_index": int(random.integers(rectangles)),
         }
         # The write that asks for a commit goes to another word, in the cycle before.
         if inputs["bus_commit"] and cycle:
-            stimulus[cycle - 1]["bus_write"] = 0
+            leaf.stimulus[cycle - 1]["bus_write"] = 0
     # The rectangle on the port, and the one on its way there for a cycle with a latency of two.
-    presented, on_the_way, bad, expected = {}, {}, False, []
-    for inputs in stimulus:
+    presented, on_the_way, bad = {}, {}, False
+    for cycle, inputs in enumerate(leaf.stimulus):
         live, shadow = table.rectangles("live"), table.rectangles("shadow")
         word = table.words.get(inputs["bus_address"])
         usable = sum(int(flag) << index for index, flag in enumerate(live.visible))
         wanted = {"readback": word.shadow if word else 0, "bad_rectangle": bad, "rects_usable": usable}
-        expected.append(wanted | presented)
+        leaf.expected[cycle] = wanted | presented
         if latency == 2:
             presented = on_the_way
         if inputs["rects_fetch"]:
@@ -121,5 +116,6 @@ def test_rect_mem(rectangles, options, tmp_path, random):
         # bad_rectangle follows the shadow by a cycle.
         bad = bool(np.any(shadow.enabled & (shadow.axes < 0))) and not inputs["reset"]
         table.clock(inputs)
-    assert sum("rects_rect_axis" in wanted for wanted in expected[len(filling) :]) > 50
-    check(leaf, stimulus, expected, settled=len(filling))
+    seen = [cycle for cycle, wanted in leaf.expected.items() if "rects_rect_axis" in wanted]
+    assert sum(cycle >= len(filling) for cycle in seen) > 50
+    leaf.check(settled=len(filling))

@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `rect_rom`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf tests of `rect_rom`."""
 
 import dataclasses
 import re
 
-import numpy as np
 import pytest
 from scene_vectors import fixed_config
-from vectors import check, leaf_of
+from vectors import Bench, by
 
 from raycaster.fixed import FixedRectangle, varying_bits
 from raycaster.rtl.common.widths import index_bits
 from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.tools import run_yosys
-from raycaster.verif.seeds import repeat, seed
+from raycaster.verif.seeds import repeat
 
 FIELDS = [field.name for field in dataclasses.fields(FixedRectangle)]
 
@@ -33,31 +32,30 @@ LOOKS = {"materials": ("mirror",), "patterns": ("kind", "cell", "colour_2")}
     ],
     ids=["1", "2", "7", "8", "12-alike", "32", "7-materials", "3-patterns", "8-alike-materials-patterns"],
 )  # fmt: skip
-def test_rect_rom(count, alike, options, engine, latency, tmp_path):
+def test_rect_rom(count, alike, options, engine, latency, leaf_of, random):
     """Each fetched rectangle after its latency; the port keeps the last one."""
     config = fixed_config(count, engine, False, alike, **options)
-    leaf, random = leaf_of(rect_rom, tmp_path, config), np.random.default_rng(seed())
+    leaf = leaf_of(rect_rom, config)
     left_out = [name for option, names in LOOKS.items() if option not in options for name in names]
     fields = [name for name in FIELDS if name not in left_out]
     assert set(leaf.seen) == {f"rects_rect_{name}" for name in fields}
-    stimulus, expected, shown = [], [None] * latency, None
+    shown = [{}] * latency
     for _ in range(300):
-        stimulus.append({"rects_index": int(random.integers(count)), "rects_fetch": int(random.integers(2))})
-        if stimulus[-1]["rects_fetch"]:
-            index = stimulus[-1]["rects_index"]
-            shown = {f"rects_rect_{name}": config.fixed.column(name)[index] for name in fields}
-        expected.append(shown)
-    check(leaf, stimulus, expected[:300], settled=8)
+        index, fetch = int(random.integers(count)), int(random.integers(2))
+        leaf.case({"rects_index": index, "rects_fetch": fetch}, shown[-latency])
+        now = {f"rects_rect_{name}": config.fixed.column(name)[index] for name in fields}
+        shown.append(now if fetch else shown[-1])
+    leaf.check(settled=8)
 
 
-@pytest.mark.parametrize("engine", ["seed", "beam"])
+@by(engine=["seed", "beam"])
 def test_rect_rom_needs_no_registers_for_equal_fields(engine, tmp_path):
     """With all rectangles on one axis, its two bits need no registers; a single rectangle needs none at all."""
     for count, alike in ((12, True), (1, False)):
         config = fixed_config(count, engine, False, alike)
         directory = tmp_path / str(count)
         directory.mkdir()
-        leaf_of(rect_rom, directory, config)
+        Bench(rect_rom, directory, config)
         run_yosys(directory, "alike", ["read_verilog rect_rom.v", "synth -top rect_rom", "tee -o stat.txt stat"])
         kinds = re.findall(r"^ +(\d+) .*_DFF\w*_|\$_DFF\w*_ +(\d+)", (directory / "stat.txt").read_text(), re.M)
         registers = sum(int(number) for pair in kinds for number in pair if number)

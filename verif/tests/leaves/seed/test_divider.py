@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `divider`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf test of `divider`: divisions back to back: each load comes with the store of the previous division."""
 
 import numpy as np
 import pytest
 from arithmetic_vectors import SLOPE_CORNERS, VECTORS, arithmetic, position_corners
-from vectors import check, leaf_of
 
 from raycaster.configuration import Configuration
 from raycaster.golden import seed_engine
@@ -27,15 +26,13 @@ def dividends_and_divisors(config: Configuration, random: np.random.Generator) -
 
 @pytest.mark.slow_sets("F1", "F4")
 @arithmetic
-def test_divider(config, tmp_path, random):
-    """Divisions back to back: each load comes with the store of the previous division."""
+def test_divider(config, leaf_of, random):
     widths = {"dividend": product_bits(config), "divisor": SLOPE_BITS, "quotient": position_bits(config)}
-    leaf, steps = leaf_of(divider, tmp_path, config, **widths), config.divider_steps
-    stimulus, expected = [], {}
+    leaf, steps = leaf_of(divider, config, **widths), config.divider_steps
     for dividend, divisor in dividends_and_divisors(config, random):
-        load = {"load_divider": 1, "store_quotient": bool(stimulus), "dividend": dividend, "divisor": divisor}
-        stimulus += [load, *[dict.fromkeys(load, 0)] * (steps - 1)]
+        load = {"load_divider": 1, "store_quotient": bool(leaf.stimulus), "dividend": dividend, "divisor": divisor}
+        leaf.stimulus += [load, *[dict.fromkeys(load, 0)] * (steps - 1)]
         quotient, overflow = seed_engine.divide(dividend, divisor, config.fraction_bits, config.rounding)
-        expected[len(stimulus) + 1] = {"overflow": overflow, "quotient": None if overflow else quotient}
-    stimulus += [{"load_divider": 0, "store_quotient": 1}, {"store_quotient": 0}]
-    check(leaf, stimulus, expected, settled=steps + 1)
+        leaf.expected[leaf.cycle + 1] = {"overflow": overflow, "quotient": None if overflow else quotient}
+    leaf.stimulus += [{"load_divider": 0, "store_quotient": 1}, {"store_quotient": 0}]
+    leaf.check(settled=steps + 1)

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `intersection_finder`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`intersection_finder`: rays as the engine meets them, and rays that meet planes at or near a rectangle's bounds."""
 
 from fractions import Fraction
 
 import numpy as np
-import pytest
 from definition import seed_hit
 from engine_vectors import rects_shown, usable_of
-from unit_vectors import unit_config
-from vectors import by_axis, check, config_id, leaf_of, slope_inputs
+from vectors import by_axis, designs, slope_inputs, unit_config
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden import seed_engine
@@ -17,25 +15,12 @@ from raycaster.golden.random_world import EXTREMES, random_camera, random_looks,
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.hdl.signals import bit, unconnected
 from raycaster.rtl.common.interfaces import Slope
-from raycaster.rtl.common.records import Origin, Ray, rect_of
+from raycaster.rtl.common.records import Origin, Ray
 from raycaster.rtl.common.widths import position_bits
 from raycaster.rtl.seed.intersection_finder import intersection_finder
 from raycaster.verif.expected import trace_cycles
 
 SLOPES = (0, 1, 2, 99, 100, 160, 190, 255, 256, 510, 511)
-
-
-# Only the divider's number of steps matters here, so not every F needs every number of bits per cycle.
-finders = pytest.mark.parametrize(
-    "config",
-    [
-        unit_config(fraction_bits=bits, rounding=rounding, divider_bits=divider_bits)
-        for bits, divider_bits in ((0, 1), (0, 3), (1, 2), (4, 3), (8, 2))
-        for rounding in ("truncate", "nearest")
-    ]
-    + [unit_config(fraction_bits=bits, materials=bits > 0, patterns=True) for bits in (0, 3)],
-    ids=config_id,
-)
 
 
 def traced_rays(config: Configuration, random: np.random.Generator, count: int) -> list:
@@ -78,24 +63,27 @@ def aimed_ray(config: Configuration, random: np.random.Generator) -> tuple:
     return origin, slope, Rectangles(corners, np.zeros((4, 3), dtype=np.uint8), np.ones(4, dtype=bool))
 
 
-@pytest.mark.slow_sets(
-    "seed-vga240-u32-r4-m1-f0n", "seed-vga240-u32-r4-m1-f0t-d3", "seed-vga240-u32-r4-m1-f1", "seed-vga240-u32-r4-m1-f4"
+# Only the divider's number of steps matters here, so not every F needs every number of bits per cycle.
+@designs(
+    *(
+        unit_config(fraction_bits=bits, rounding=rounding, divider_bits=divider_bits)
+        for bits, divider_bits in ((0, 1), (0, 3), (1, 2), (4, 3), (8, 2))
+        for rounding in ("truncate", "nearest")
+    ),
+    *(unit_config(fraction_bits=bits, materials=bits > 0, patterns=True) for bits in (0, 3)),
+    slow=[f"seed-vga240-u32-r4-m1-{name}" for name in ("f0n", "f0t-d3", "f1", "f4")],
 )
-@finders
-def test_intersection_finder(config, tmp_path, random):
-    """Rays as the engine meets them, and rays that meet planes at or near a rectangle's bounds."""
+def test_intersection_finder(config, leaf_of, random):
     odd = dict.fromkeys(("odd_u", "odd_v"), bit if config.patterns else lambda: unconnected(1))
     ports = {"ray": lambda: Ray(config), "point": lambda: Origin(config), "depth": position_bits(config)}
-    ports |= {"slope": Slope, "offered": lambda: rect_of(config)}
-    leaf = leaf_of(intersection_finder, tmp_path, config, **ports, **odd)
+    leaf = leaf_of(intersection_finder, config, **ports, **odd, slope=Slope)
     hit, one = seed_hit(config.fraction_bits, config.rounding), 1 << config.fraction_bits
-    stimulus, expected, seen = [], {}, set()
+    seen = set()
     for origin, slope, plain in traced_rays(config, random, 15) + [aimed_ray(config, random) for _ in range(180)]:
         table, start = random_looks(random, plain), [Fraction(int(place), one) for place in origin]
         for cycle in trace_cycles(config, usable_of(table), 0)[1:]:
             inputs = by_axis("ray_", origin) | slope_inputs(slope, "ray") | rects_shown(config, cycle, table)
-            for name in ("steps_find_intersection", "steps_load_divider", "steps_store_quotient"):
-                inputs[name] = cycle.steps[name]
+            leaf.case(inputs | {name: value for name, value in cycle.steps.items() if name in leaf.given})
             if cycle.steps["steps_write_z_buf"]:
                 found = hit(table, cycle.offered, start, slope.tolist(), None)
                 wanted = {"hit": found is not None}
@@ -106,8 +94,7 @@ def test_intersection_finder(config, tmp_path, random):
                         u, v = OTHER_AXES[table.axes[cycle.offered]]
                         cell = int(table.cells[cycle.offered])
                         wanted |= {"odd_u": point[u] // cell % 2, "odd_v": point[v] // cell % 2}
-                expected[len(stimulus)] = wanted
+                leaf.expect(wanted)
                 seen.add((int(table.axes[cycle.offered]), found is not None))
-            stimulus.append(inputs)
-    check(leaf, stimulus, expected, settled=config.divider_steps + 5)
+    leaf.check(settled=config.divider_steps + 5)
     assert len(seen) == 6, "each axis must be hit and missed"

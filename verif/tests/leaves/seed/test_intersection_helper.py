@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `intersection_helper`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""`intersection_helper`: corner cases, random operands, products with every bit visible, and powers of two."""
 
 import pytest
 from arithmetic_vectors import SLOPE_CORNERS, VECTORS, arithmetic, position_corners
-from vectors import check, leaf_of
 
 from raycaster.golden import seed_engine
 from raycaster.hdl.signals import Signed
@@ -15,11 +14,10 @@ POWERS = tuple(1 << place for place in range(SLOPE_BITS))
 
 @pytest.mark.slow_sets("F1", "F4")
 @arithmetic
-def test_intersection_helper(config, tmp_path, random):
-    """Corner cases, random operands, products with every bit visible, and distances with a single bit set."""
+def test_intersection_helper(config, leaf_of, random):
     width = position_bits(config)
     widths = dict.fromkeys(("a", "c", "d", "quotient", "distance"), width) | dict.fromkeys("be", SLOPE_BITS)
-    leaf = leaf_of(intersection_helper, tmp_path, config, **widths, value=Signed(width + 2))
+    leaf = leaf_of(intersection_helper, config, **widths, value=Signed(width + 2))
     corners = position_corners(config)
 
     def position() -> int:
@@ -41,24 +39,23 @@ def test_intersection_helper(config, tmp_path, random):
         d = c - distance if c >= distance else min(c + distance, (1 << width) - 1)
         operands.append((position(), b * int(random.choice([-1, 1])), c, d, e * int(random.choice([-1, 1]))))
     steps, valid_seen = config.divider_steps, 0
-    idle = {"steps_find_intersection": 0, "steps_load_divider": 0, "steps_store_quotient": 0}
-    stimulus = [dict(idle) for _ in range((len(operands) + 2) * steps + 6)]
-    expected = [{} for _ in stimulus]
+    idle = dict.fromkeys(("steps_find_intersection", "steps_load_divider", "steps_store_quotient"), 0)
+    leaf.stimulus = [dict(idle) for _ in range((len(operands) + 2) * steps + 6)]
     for number, (a, b, c, d, e) in enumerate(operands):
         start = number * steps
-        stimulus[start] |= {"steps_find_intersection": 1, "b": abs(b), "b_negative": b < 0}
-        stimulus[start] |= {"c": c, "d": d, "e": abs(e), "e_negative": e < 0}
-        stimulus[start + 2]["steps_load_divider"] = 1
-        stored = start + 2 + steps
-        stimulus[stored]["steps_store_quotient"] = 1
-        stimulus[stored + 1]["a"] = a
+        leaf.stimulus[start] |= {"steps_find_intersection": 1, "b": abs(b), "b_negative": b < 0}
+        leaf.stimulus[start] |= {"c": c, "d": d, "e": abs(e), "e_negative": e < 0}
+        leaf.stimulus[start + 2]["steps_load_divider"] = 1
+        stored = start + 3 + steps
+        leaf.stimulus[stored - 1]["steps_store_quotient"] = 1
+        leaf.stimulus[stored]["a"] = a
         value, valid = seed_engine.intersect(a, b, c, d, e, config.fraction_bits, config.rounding)
-        expected[start + 1]["towards"] = (c - d) * e > 0
-        expected[stored + 1]["valid"] = valid
+        leaf.expected[start + 1]["towards"] = (c - d) * e > 0
+        leaf.expected[stored]["valid"] = valid
         if valid:
             valid_seen += 1
-            expected[stored + 1] |= {"quotient": abs(int(value) - a), "distance": abs(c - d)}
-            expected[stored + 2]["value"] = value
-    outputs = check(leaf, stimulus, expected, settled=steps + 4)
-    assert outputs[1]["towards"] == expected[1]["towards"]
+            leaf.expected[stored] |= {"quotient": abs(int(value) - a), "distance": abs(c - d)}
+            leaf.expected[stored + 1]["value"] = value
+    outputs = leaf.check(settled=steps + 4)
+    assert outputs[1]["towards"] == leaf.expected[1]["towards"]
     assert valid_seen > VECTORS // 10

@@ -1,26 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_control`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf test of `ray_control`: rows of any rectangles and fates, with every number of cycles per rectangle."""
 
-import pytest
-from fates import check_control
-from vectors import any_config, config_id
+from fates import check_control, control_leaf
+from vectors import any_config, designs
 
 from raycaster.rtl.seed.ray_control import ray_control
 
 
-@pytest.mark.slow_sets("seed-vga240-u32-r12", "seed-vga240-u32-r32", "seed-vga240-u32-r8")
-@pytest.mark.parametrize(
-    "config",
-    [
-        any_config(rectangles=rectangles, reflections=reflections, fraction_bits=bits, divider_bits=divider_bits)
-        for rectangles, reflections, bits, divider_bits in (
-            (1, 0, 0, 1), (1, 2, 8, 1), (2, 1, 0, 3), (3, 2, 0, 3), (5, 1, 4, 2), (8, 2, 1, 2), (12, 1, 0, 1),
-            (12, 2, 0, 3), (32, 1, 8, 3),
-        )
-    ]
-    + [any_config(rectangles=5, reflections=2, culling=False)],
-    ids=config_id,
-)  # fmt: skip
-def test_ray_control(config, tmp_path, random):
-    """Rows of any rectangles and fates, with every number of cycles per rectangle."""
-    check_control(ray_control, config, tmp_path, random)
+@designs(
+    any_config(rectangles=1, reflections=0, divider_bits=1),
+    any_config(rectangles=1, reflections=2, fraction_bits=8, divider_bits=1),
+    any_config(rectangles=2, reflections=1, divider_bits=3),
+    any_config(rectangles=3, reflections=2, divider_bits=3),
+    any_config(rectangles=5, reflections=1, fraction_bits=4, divider_bits=2),
+    any_config(rectangles=8, reflections=2, fraction_bits=1, divider_bits=2),
+    any_config(rectangles=12, reflections=1, divider_bits=1),
+    any_config(rectangles=12, reflections=2, divider_bits=3),
+    any_config(rectangles=32, reflections=1, fraction_bits=8, divider_bits=3),
+    any_config(rectangles=5, reflections=2, culling=False),
+    slow=["seed-vga240-u32-r12", "seed-vga240-u32-r32", "seed-vga240-u32-r8"],
+)
+def test_ray_control(config, leaf_of, random):
+    check_control(control_leaf(leaf_of, ray_control, config), config, random)

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_caster`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf test of `ray_caster`: pixels of both engines, and the cycle of done.
+
+With culling, a group follows others of its frame, during which its rectangles were tested or not.
+"""
 
 from itertools import pairwise
 
 import numpy as np
-import pytest
 from engine_vectors import fate_of, scene_inputs, usable_of
 from fates import may_hit_mask
 from hard_scenes import pixel_word, traced_scene, tracer
-from vectors import any_config, basis_inputs, check, check_fetches, designs, leaf_of
+from vectors import any_config, basis_inputs, check_fetches, designs
 
 from raycaster.configuration import Configuration
 from raycaster.engines.engine import SETUP_LATENCY
@@ -57,14 +59,6 @@ def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int
     return [*indices, queue[blends - 1], queue[blends - (rect_cycles(config) > 1)]]
 
 
-@pytest.mark.slow_sets(
-    "exact-vga240-u1-r4-m2",
-    "exact-vga240-u4-r6-m2",
-    "exact-vga240-u5",
-    "seed-vga240-u1-",
-    "seed-vga240-u4-r5-m2-f0t-d3-c8-k0",
-    "seed-vga240-u5",
-)
 @designs(
     any_config(units=1, rectangles=4, reflections=1, divider_bits=3),
     any_config(units=2, rectangles=8, reflections=2, fraction_bits=4, rounding="nearest", divider_bits=3),
@@ -78,15 +72,15 @@ def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int
     any_config(units=4, rectangles=5, reflections=2, divider_bits=3, materials=True, culling=False),
     any_config(engine="exact", units=2, rectangles=6, reflections=2, materials=True),
     any_config(engine="exact", units=4, rectangles=6, reflections=1, turn=True, culling=True),
-)
-def test_ray_caster(config, tmp_path, random):
-    """Pixels of both engines, and the cycle of done.
-
-    With culling, a group follows others of its frame, during which its rectangles were tested or not.
-    """
-    leaf = leaf_of(ray_caster, tmp_path, config, pixels=config.units * pixel_bits(config))
+    slow=[
+        "exact-vga240-u1-r4-m2", "exact-vga240-u4-r6-m2", "exact-vga240-u5", "seed-vga240-u1-",
+        "seed-vga240-u4-r5-m2-f0t-d3-c8-k0", "seed-vga240-u5",
+    ],
+)  # fmt: skip
+def test_ray_caster(config, leaf_of, random):
+    leaf = leaf_of(ray_caster, config, pixels=config.units * pixel_bits(config))
     predicts = config.culling and not config.turn
-    stimulus, results, shown, culled = [], [], {}, 0
+    results, shown, culled = [], {}, 0
     for _ in range((160 if config.engine == "exact" else 80) if config.units == 1 else 12):
         basis = random_basis(random) if config.turn else UNTURNED
         groups = primary_slopes(config.screen_geometry, basis)
@@ -108,30 +102,29 @@ def test_ray_caster(config, tmp_path, random):
                 culled += len(usable) - len(fate["may_hit"])
             held = {**scene, "place_row": place[0], "place_column_offset": place[1]}
             if place == places[0]:
-                stimulus.append({**held, "reset_ray_caster": 1, "enable": 1})
-            stimulus.append({**held, **rects.get(at_hand, {}), "reset_ray_caster": 1, "enable": 1})
-            stimulus += [{**held, "reset_ray_caster": 0, "enable": 0}] * int(random.integers(3))
-            stimulus.append({**held, "reset_ray_caster": 0, "enable": 1})
+                leaf.case({**held, "reset_ray_caster": 1, "enable": 1})
+            leaf.case({**held, **rects.get(at_hand, {}), "reset_ray_caster": 1, "enable": 1})
+            leaf.stimulus += [{**held, "reset_ray_caster": 0, "enable": 0}] * int(random.integers(3))
+            leaf.case({**held, "reset_ray_caster": 0, "enable": 1})
             cycles = trace_cycles(config, usable, reflections, **fate)
             *indices, at_hand = remembered(config, cycles, usable)
-            shown |= {len(stimulus) + number: index for number, index in enumerate(indices) if number}
+            shown |= {leaf.cycle + number: index for number, index in enumerate(indices) if number}
             for index in indices:
                 rect = rects.get(index, {})
-                stimulus.append({**held, **rect, "reset_ray_caster": 0, "enable": int(random.integers(2))})
+                leaf.case({**held, **rect, "reset_ray_caster": 0, "enable": int(random.integers(2))})
             # Within a frame, the cycle of done is the first of a reset.
-            stimulus[-1]["reset_ray_caster"] = int(place != last)
+            leaf.stimulus[-1]["reset_ray_caster"] = int(place != last)
             colours = [pixel_word(config, colour) for colour in golden.colours]
-            results.append((len(stimulus) - 1, colours))
+            results.append((leaf.cycle - 1, colours))
             # The first group copies the rectangles; the others test them if they take long enough.
             tests = place != (0, 0) and len(cycles) >= config.rectangles + SETUP_LATENCY
             following = place_after(config, place) if tests else None
-        stimulus.append({})
-        results.append((len(stimulus) - 1, results[-1][1]))
-    width, expected = pixel_bits(config), {}
+        leaf.case({})
+        results.append((leaf.cycle - 1, results[-1][1]))
     for cycle, colours in results:
-        pixels = sum(colour << width * unit for unit, colour in enumerate(colours))
-        expected.setdefault(cycle - 1, {"done": 0})
-        expected[cycle] = {"done": 1, "pixels": pixels}
-    outputs = check(leaf, stimulus, expected, settled=results[0][0])
+        pixels = sum(colour << pixel_bits(config) * unit for unit, colour in enumerate(colours))
+        leaf.expected.setdefault(cycle - 1, {"done": 0})
+        leaf.expected[cycle] = {"done": 1, "pixels": pixels}
+    outputs = leaf.check(settled=results[0][0])
     check_fetches(outputs, shown, "rects_")
     assert bool(culled) == predicts, "rectangles must be culled exactly if the design predicts"

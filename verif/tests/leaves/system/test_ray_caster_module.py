@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_caster_module`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf tests of `ray_caster_module`."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from engine_vectors import (
     golden_words,
     scene_in_view,
     small_config,
-    start_screen_cycle,
+    start_cycle,
 )
 from hard_scenes import rectangles_in_view, tracer, with_looks
 from vectors import AXES, designs
@@ -107,14 +107,6 @@ def check_bus(config: Configuration, stimulus: list[dict[str, int]], outputs: li
     return answers
 
 
-@pytest.mark.slow_sets(
-    "",
-    quick=[
-        "beam-tiny4-s1-u1-r2-m1-c8-turn",
-        "exact-tiny4-u4-r3-m2-c8-turn",
-        "seed-tiny4-u4-r3-m1-f0t-d1-c8-materials-patterns",
-    ],
-)
 @designs(
     small_config(units=4, rectangles=3, reflections=1),
     small_config(units=4, rectangles=2, reflections=2, fraction_bits=4, rounding="nearest", colour_bits=4),
@@ -126,6 +118,12 @@ def check_bus(config: Configuration, stimulus: list[dict[str, int]], outputs: li
     small_config(
         LONG_BLANKING, engine="beam", rectangles=2, reflections=1, scale=1, turn=True, materials=True, patterns=True
     ),
+    slow=[""],
+    quick=[
+        "beam-tiny4-s1-u1-r2-m1-c8-turn",
+        "exact-tiny4-u4-r3-m2-c8-turn",
+        "seed-tiny4-u4-r3-m1-f0t-d1-c8-materials-patterns",
+    ],
 )
 def test_ray_caster_module(config, tmp_path, random):
     """Two scenes over the bus, one shown after the other; every output in every cycle, and every pixel."""
@@ -150,7 +148,7 @@ def test_ray_caster_module(config, tmp_path, random):
         pictures.append(golden_words(config, colours))
         bus.write_scene(camera, background, config.reflections, table, basis=basis)
         # Wait until the cycle after the next StartScreen.
-        so_far = len(bus.stimulus) - 2 - start_screen_cycle(screen) - 1
+        so_far = len(bus.stimulus) - 2 - start_cycle(screen) - 1
         bus.wait(-so_far % screen.frame_cycles)
     bus.wait(screen.frame_cycles - 50)
     for name in ("status", "cycles", "engine", "size"):
@@ -199,7 +197,7 @@ def test_ray_caster_module_scenes(config, tmp_path, random):
         camera, table, background, reflections, words = scene
         run = random.random() < 0.9
         pictures.append(words * run)
-        start = 2 + start_screen_cycle(screen) + number * screen.frame_cycles
+        start = 2 + start_cycle(screen) + number * screen.frame_cycles
         # A commit before the scene is never shown; writes after the scene wait for a commit.
         traffic(start - screen.frame_cycles + int(random.integers(10, 400)))
         bus.write("control", run=1, commit=1, reflections=0)

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_caster_renderer`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf tests of `ray_caster_renderer`."""
 
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-import pytest
 from engine_vectors import (
     TINY_SCREEN,
     check_frames,
@@ -13,41 +12,26 @@ from engine_vectors import (
     scene_in_view,
     scene_inputs,
     small_config,
-    start_screen_cycle,
+    start_cycle,
 )
 from hard_scenes import pixel_word
-from vectors import designs, leaf_of, plain
+from vectors import designs
 
-from raycaster.configuration import Configuration
 from raycaster.golden.engines import model_of
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
-from raycaster.hdl.leaf import Leaf
-from raycaster.rtl.common.records import Point
 from raycaster.rtl.system.ray_caster_module import RENDERERS
 from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
 from raycaster.screens import Screen, Span
 from raycaster.verif.expected import sorted_rect, trace_cycles
 
 COARSE = Screen(
-    columns=8,
-    rows=2,
-    horizon_row=1,
-    doubling=4,
-    horizontal=Span(32, 8, 48, 40, active_high=False),
-    vertical=Span(8, 1, 2, 2, active_high=True),
-    clocks_per_pixel=1,
-    distance=50,
-)
+    columns=8, rows=2, horizon_row=1, doubling=4, clocks_per_pixel=1, distance=50,
+    horizontal=Span(32, 8, 48, 40, active_high=False), vertical=Span(8, 1, 2, 2, active_high=True),
+)  # fmt: skip
 """A screen with one clock per pixel and half the slope ahead."""
 
 
-def renderer_leaf(config: Configuration, directory) -> Leaf:
-    """Make a leaf of the engine's renderer."""
-    return leaf_of(RENDERERS.get(config.engine, ray_caster_renderer), directory, config, camera=Point)
-
-
-@pytest.mark.slow_sets("seed-tiny4-u4-r1-m2")
 @designs(
     small_config(units=4, rectangles=1, reflections=1, colour_bits=8, culling=False),
     small_config(units=2, rectangles=1, reflections=0, fraction_bits=4, rounding="nearest", culling=False),
@@ -58,26 +42,26 @@ def renderer_leaf(config: Configuration, directory) -> Leaf:
     small_config(
         units=1, rectangles=1, reflections=0, fraction_bits=8, divider_bits=1, allow_underrun=True, culling=False
     ),
+    slow=["seed-tiny4-u4-r1-m2"],
 )
-def test_ray_caster_renderer(config, tmp_path, random):
+def test_ray_caster_renderer(config, leaf_of, random):
     """One rectangle, so the memory's answer never changes; the first frame shows none, the third is black."""
     screen = config.screen_geometry
     camera = np.array([100, 200, 100])
     # At twice the distance of the viewing rectangle, a column is two units wide and a row two units high.
-    table = Rectangles(
-        np.array([[(301, 511, 104), (301, 192, 100)]]),
-        random.integers(1, 256, size=(1, 3)).astype(np.uint8),
-        np.ones(1, dtype=bool),
-    )
+    corners, colours = np.array([[(301, 511, 104), (301, 192, 100)]]), random.integers(1, 256, size=(1, 3))
+    table = Rectangles(corners, colours.astype(np.uint8), np.ones(1, dtype=bool))
     background = random.integers(1, 256, size=3)
     scene = scene_inputs(camera, table, background, config.reflections) | sorted_rect(table, 0, "rects_rect")
     del scene["rects_usable"]
-    start, frame = start_screen_cycle(screen), screen.frame_cycles
+    start, frame = start_cycle(screen), screen.frame_cycles
     # From the cycle after each StartScreen on, the next scene.
-    stimulus = [{**scene, "reset": 1}] * 2 + [{"reset": 0, "picture_run": 1, "rects_usable": 0}] * (start + 1 + frame)
-    stimulus += [{"rects_usable": 1}] * frame + [{"picture_run": 0}] * (frame // 2)
+    leaf = leaf_of(ray_caster_renderer, config)
+    leaf.stimulus += [{**scene, "reset": 1}] * 2
+    leaf.stimulus += [{"reset": 0, "picture_run": 1, "rects_usable": 0}] * (start + 1 + frame)
+    leaf.stimulus += [{"rects_usable": 1}] * frame + [{"picture_run": 0}] * (frame // 2)
     # The control's fetches are known from the first group on.
-    outputs = renderer_leaf(config, tmp_path).run_both(plain(stimulus), settled=2 + start + 6)[2:]
+    outputs = leaf.check(settled=2 + start + 6)[2:]
 
     slopes = primary_slopes(screen).reshape(-1, 3)
     colours = model_of(config).trace(table, camera, background, slopes, config.reflections).colours
@@ -107,10 +91,8 @@ def test_ray_caster_renderer(config, tmp_path, random):
         assert 2 * group < busy < screen.rows * config.groups * group / 2
         return
     if not config.allow_underrun:
-        assert (
-            max(output["progress_row_cycles"] for output in in_second if output["progress_busy"])
-            == config.groups * group
-        )
+        row_cycles = max(output["progress_row_cycles"] for output in in_second if output["progress_busy"])
+        assert row_cycles == config.groups * group
         assert busy == screen.rows * config.groups * group
         times = [output["progress_group_cycles"] for output in in_second]
         finished = [before for before, after in pairwise(times) if after < before]
@@ -122,13 +104,13 @@ LONG_LINE = replace(TINY_SCREEN, horizontal=Span(16, 8, 24, 60, active_high=Fals
 """A screen whose lines are long enough to set up a line at two pixels per clock."""
 
 
-@pytest.mark.slow_sets("beam-tiny2-s2-u2", "seed")
 @designs(
     small_config(TINY_SCREEN, units=2, rectangles=1, reflections=1, divider_bits=1),
     small_config(TINY_SCREEN, engine="beam", rectangles=1, reflections=1, scale=1),
     small_config(LONG_LINE, engine="beam", rectangles=1, reflections=1, pixels=2),
+    slow=["beam-tiny2-s2-u2", "seed"],
 )
-def test_ray_caster_renderer_scenes(config, tmp_path, random):
+def test_ray_caster_renderer_scenes(config, leaf_of, random):
     """One scene per frame, with one rectangle anywhere, and once disabled; both renderers."""
     screen = config.screen_geometry
     scenes = [scene_in_view(random, config, number % 3) for number in range(50 if config.engine == "beam" else 30)]
@@ -136,22 +118,23 @@ def test_ray_caster_renderer_scenes(config, tmp_path, random):
     disabled = Rectangles(table.corners, table.colours, np.zeros(1, dtype=bool))
     empty = golden_words(config, np.broadcast_to(background, (words.size, 3)))
     scenes.insert(0, (camera, disabled, background, reflections, empty))
-    stimulus = [{"reset": 1, "picture_run": 1}] * 2
-    start = start_screen_cycle(screen)
+    leaf = leaf_of(RENDERERS.get(config.engine, ray_caster_renderer), config)
+    leaf.stimulus += [{"reset": 1, "picture_run": 1}] * 2
+    start = start_cycle(screen)
     for number, (camera, table, background, reflections, _) in enumerate(scenes):
         scene = scene_inputs(camera, table, background, reflections) | {"reset": 0}
         if table.axes[0] >= 0:
             scene |= sorted_rect(table, 0, "rects_rect")
         # From the cycle after each StartScreen on, the next scene.
-        stimulus += [scene] * (screen.frame_cycles if number else start + 1 + screen.frame_cycles)
-    stimulus += [{"picture_run": 0}] * screen.frame_cycles
-    shown = len(stimulus) - 2
+        leaf.stimulus += [scene] * (screen.frame_cycles if number else start + 1 + screen.frame_cycles)
+    leaf.stimulus += [{"picture_run": 0}] * screen.frame_cycles
+    shown = leaf.cycle - 2
     if config.engine == "beam":
         # Reset right after a row was announced; that row must not begin in the following blanking.
-        stimulus += [{"picture_run": 1}] * (screen.doubling * screen.line_cycles + 2)
-        stimulus += [{"reset": 1}] * 2 + [{"reset": 0}] * 3 * screen.line_cycles
-    stimulus += [{"reset": 1}] * 2
-    outputs = renderer_leaf(config, tmp_path).run_both(plain(stimulus), settled=2 + start + 6)[2:]
+        leaf.stimulus += [{"picture_run": 1}] * (screen.doubling * screen.line_cycles + 2)
+        leaf.stimulus += [{"reset": 1}] * 2 + [{"reset": 0}] * 3 * screen.line_cycles
+    leaf.stimulus += [{"reset": 1}] * 2
+    outputs = leaf.check(settled=2 + start + 6)[2:]
     assert not any(output["progress_busy"] for output in outputs[shown:])
     # The last frame is black.
     check_frames(outputs[:shown], config, [*(scene[-1] for scene in scenes), 0 * empty])

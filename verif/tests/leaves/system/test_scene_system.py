@@ -1,18 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `scene_system`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf test of `scene_system`: the scene loads itself, and buttons move the camera from frame to frame."""
 
 import numpy as np
-from engine_vectors import (
-    TINY_SCREEN,
-    check_frames,
-    golden_words,
-    scene_in_view,
-    small_config,
-    start_screen_cycle,
-)
+from engine_vectors import TINY_SCREEN, check_frames, golden_words, scene_in_view, small_config, start_cycle
+from hard_scenes import tracer
 
 from raycaster.configuration import WORLD_SIZE
-from raycaster.golden.engines import model_of
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.hdl.leaf import Leaf
@@ -26,7 +19,6 @@ from raycaster.verif.random_scenes import rectangle_of
 
 
 def test_scene_system(tmp_path, random):
-    """The scene loads itself, and buttons move the camera from frame to frame."""
     config = small_config(TINY_SCREEN, units=2, rectangles=3, reflections=1, divider_bits=2)
     screen = config.screen_geometry
     slopes = primary_slopes(screen).reshape(-1, 3)
@@ -36,11 +28,8 @@ def test_scene_system(tmp_path, random):
         camera, table, background, *_ = scene_in_view(random, config, 0)
         table = Rectangles(table.corners, table.colours, np.ones(config.rectangles, dtype=bool))
         holds = np.repeat(random.integers(1 << len(BUTTONS), size=frames // 3), 3)
-        positions = walk(camera, holds)
-        pictures = [
-            model_of(config).trace(table, position, background, slopes, config.reflections).colours
-            for position in positions
-        ]
+        trace = tracer(config, background=background, slopes=slopes, reflections=config.reflections)
+        pictures = [trace(table, camera=position).colours for position in walk(camera, holds)]
         # Most random scenes look the same from everywhere.
         if len({picture.tobytes() for picture in pictures}) > frames // 2:
             break
@@ -55,7 +44,7 @@ def test_scene_system(tmp_path, random):
     stimulus = [{"ready": 0, "buttons": 0}] * ready
     for number, held in enumerate(holds):
         # Hold the buttons until the cycle after StartScreen, in which they count.
-        until = start + start_screen_cycle(screen) + number * screen.frame_cycles + 2
+        until = start + start_cycle(screen) + number * screen.frame_cycles + 2
         stimulus += [{"ready": 1, "buttons": int(held)}] * (until - len(stimulus))
     stimulus += [{"ready": 1, "buttons": 0}] * screen.frame_cycles
     leaf = Leaf(scene_system, lambda: scene_system_ports(config) | {"config": config, "scene": scene}, tmp_path)

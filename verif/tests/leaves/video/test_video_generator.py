@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `video_generator`: MyHDL and converted Verilog match the expected values on the same vectors."""
+"""Leaf tests of `video_generator`."""
 
 from dataclasses import replace
 
 import pytest
-from vectors import check, leaf_of
+from vectors import by
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import configure
 from raycaster.rtl.common.interfaces import Scan, Vga
 from raycaster.rtl.common.records import Pixel
 from raycaster.rtl.video.video_generator import video_generator
@@ -63,60 +63,47 @@ SMALL_SCREENS = {
     "tiny": SCREENS["tiny", 48],
 }
 
+PAIRS = Screen(10, 2, 1, 1, Span(10, 2, 4, 6, active_high=True), Span(2, 1, 2, 1, active_high=False), 1)
+
 ONE_CLOCK = {
     "one-clock": (replace(SMALL_SCREENS["both-low"], clocks_per_pixel=1), 0, False),
     "a-clock-early": (replace(SMALL_SCREENS["threefold"], clocks_per_pixel=1), 1, False),
     "early": (replace(SMALL_SCREENS["mixed"], clocks_per_pixel=1), 9, True),
     "early-doubled": (replace(SMALL_SCREENS["both-high"], clocks_per_pixel=1), 5, True),
     "early-threefold": (replace(SMALL_SCREENS["threefold"], clocks_per_pixel=1), 4, True),
-    "pairs": (
-        Screen(10, 2, 1, 1, Span(10, 2, 4, 6, active_high=True), Span(2, 1, 2, 1, active_high=False), 1).paired(),
-        5,
-        True,
-    ),
+    "pairs": (PAIRS.paired(), 5, True),
 }
 """Screens, the number of pixel clocks by which columns are announced early, and whether in their first clock."""
 
 
-@pytest.mark.parametrize("colour_bits", [1, 8])
-@pytest.mark.parametrize("name", [*SMALL_SCREENS, *ONE_CLOCK])
-def test_video_generator(name, colour_bits, tmp_path, random):
+@by(name=[*SMALL_SCREENS, *ONE_CLOCK], colour_bits=[1, 8])
+def test_video_generator(name, colour_bits, leaf_of, random):
     screen, lead, at_start = ONE_CLOCK.get(name) or (SMALL_SCREENS[name], 0, False)
     channels = ("pixel_red", "pixel_green", "pixel_blue")
     width = colour_bits * screen.pixels_per_clock
     ports = {"scan": Scan, "pixel": lambda: Pixel(width), "vga": lambda: Vga(width)}
-    leaf = leaf_of(video_generator, tmp_path, **ports, screen=screen, lead=lead, at_start=at_start)
+    leaf = leaf_of(video_generator, **ports, screen=screen, lead=lead, at_start=at_start)
     large = screen.frame_cycles > 10_000
     # Three frames, then one that reset ends early in a pixel's second half, then a few lines; large screens: one frame.
     lengths = [screen.frame_cycles + 500] if large else [3 * screen.frame_cycles + 7, screen.frame_cycles // 2 | 1, 60]
-    stimulus, expected = [], []
     for length in lengths:
         shown = []
         for cycle in (None, None, *range(length)):
             colours = random.integers(1 << width, size=3).tolist()
-            stimulus.append({**dict(zip(channels, colours, strict=True)), "reset": int(cycle is None)})
-            shown += [] if cycle is None else [colours]
-            expected.append(None if cycle is None else video_model(screen, lead, at_start, cycle, shown))
-    check(leaf, stimulus, expected, settled=1)
-
-
-def standard(config: Configuration) -> tuple[tuple[int, ...], tuple[int, ...], bool, bool]:
-    """Return a video mode: pixels of a line, lines of a frame, and whether the syncs are active high."""
-    horizontal, vertical = config.screen_geometry.horizontal, config.screen_geometry.vertical
-    return (
-        (horizontal.visible, horizontal.front, horizontal.sync, horizontal.back),
-        (vertical.visible, vertical.front, vertical.sync, vertical.back),
-        horizontal.active_high,
-        vertical.active_high,
-    )
+            leaf.case({**dict(zip(channels, colours, strict=True)), "reset": int(cycle is None)})
+            if cycle is not None:
+                shown.append(colours)
+                leaf.expect(video_model(screen, lead, at_start, cycle, shown))
+    leaf.check(settled=1)
 
 
 @pytest.mark.parametrize(
-    ("rows", "mode"),
+    ("rows", "horizontal", "vertical"),
     [
-        (240, ((640, 16, 96, 48), (480, 10, 2, 33), False, False)),
-        (200, ((640, 16, 96, 48), (400, 12, 2, 35), False, True)),
+        (240, Span(640, 16, 96, 48, active_high=False), Span(480, 10, 2, 33, active_high=False)),
+        (200, Span(640, 16, 96, 48, active_high=False), Span(400, 12, 2, 35, active_high=True)),
     ],
 )
-def test_the_full_screens_are_the_standard_modes(rows, mode):
-    assert standard(configure(rows=rows)) == mode
+def test_the_full_screens_are_the_standard_modes(rows, horizontal, vertical):
+    screen = configure(rows=rows).screen_geometry
+    assert (screen.horizontal, screen.vertical) == (horizontal, vertical)
