@@ -13,7 +13,6 @@ import pytest
 from conftest import BUILD, broken, called
 from rich.console import Console
 
-from raycaster.debug.probes import module_of
 from raycaster.debug.probes.engines import description_of
 from raycaster.debug.probes.ray import Place, Ray, Reading, first_difference, read
 from raycaster.debug.recorder import record
