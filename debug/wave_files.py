@@ -55,7 +55,7 @@ class View:
 
 
 def write_files(waves: Waves, view: View) -> list[Path]:
-    """Write all files next to a waveform, each of which appears complete; return those for GTKWave and Surfer.
+    """Write all files next to a waveform, each atomically; return the files for GTKWave and Surfer.
 
     Raises:
         UserError: the waveform lacks a signal.

@@ -20,7 +20,7 @@ from raycaster.convert.take_home import TOP
 from raycaster.outcomes import RESULTS
 from raycaster.report import plots
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
-from raycaster.report.points import Point, Sweep, predicted_cycles
+from raycaster.report.points import Point, Sweep, predicted_cycles, required_mhz
 
 WORST_SCENE = "scenes/mirror_room.toml"
 """Scene for the simulations: it fills the designs' rectangle tables, so no row of another scene takes longer."""
@@ -186,11 +186,6 @@ def routed_clocks() -> dict[str, float]:
         for one, mhz in reached:
             found[one] = min(mhz, found.get(one, mhz))
     return found
-
-
-def required_mhz(config: Configuration) -> float:
-    """Return the clock that the design's monitor requires, in MHz."""
-    return config.screen_geometry.clock_hz / 1e6
 
 
 def best_of(designs: Sequence[Design]) -> list[Design]:

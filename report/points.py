@@ -315,8 +315,7 @@ def _left(point: Point) -> dict[str, Any]:
     for part, config in leaving_out(point.what, point.config.engine):
         counted = with_units(config, LEFT_UNITS)
         figures = {"units": config.units, "cycles": predicted_cycles(counted)}
-        clock = counted.screen_geometry.clock_hz / 1e6
-        steps.append({"left_out": part, **_counted(counted), **figures, "clock_mhz": clock})
+        steps.append({"left_out": part, **_counted(counted), **figures, "clock_mhz": required_mhz(counted)})
     return {"steps": steps}
 
 
@@ -327,6 +326,11 @@ def predicted_cycles(config: Configuration) -> int:
     """
     screen = config.screen_geometry
     return config.group_cycles * config.groups * screen.rows * (1 if config.facts.line_buffered else screen.doubling**2)
+
+
+def required_mhz(config: Configuration) -> float:
+    """Return the clock that the design's monitor requires, in MHz."""
+    return config.screen_geometry.clock_hz / 1e6
 
 
 def _time(point: Point) -> dict[str, Any]:

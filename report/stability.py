@@ -64,8 +64,8 @@ def stability_chapter(what: Extent, sweep: Sweep) -> tuple[Chapter, dict[str, in
         "These scenes strain fixed-point arithmetic: grazed planes, corners, slits, points, facing mirrors, turned "
         "cameras, and patterns hit on the borders of their cells. The relative condition number of a hit is the "
         "relative change of the hit point per relative change of the slope, for small changes: one over the cosine of "
-        "the angle of incidence, in mirrors too; a case's is the maximum over all hits. Only the seed engine rounds, "
-        "and its camera cannot turn. Hit points were read from the simulated ray units of "
+        "the angle of incidence, in mirrors too; the condition of a case is the maximum over all hits. Only the seed "
+        "engine rounds, and its camera cannot turn. Hit points were read from the simulated ray units of "
         f"{len(what.probed)} designs, with {len(what.probed_cases)} cases: hit_points.csv."
     )
     drawn = [_stiffness(pictures, conditions, first), _flips(pictures)]

@@ -193,7 +193,7 @@ def config_id(value) -> str | None:
 
 
 def designs(*configs: Configuration, slow: Sequence[str] = (), quick: Sequence[str] = ()) -> Callable:
-    """Run a test for each of these designs, with its name in the test's; slow and quick are as for `slow_sets`."""
+    """Run a test for each of these designs, named after the design; slow and quick are as for `slow_sets`."""
 
     def marked(test: Callable) -> Callable:
         test = pytest.mark.slow_sets(*slow, quick=quick)(test) if slow or quick else test

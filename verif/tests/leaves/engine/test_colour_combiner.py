@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf test of `colour_combiner`: pixels of a ray and its reflections, each of which hits something or not."""
+"""Leaf test of `colour_combiner`: pixels of a ray and its reflections, which hit or miss."""
 
 import numpy as np
 from arithmetic_vectors import plain_shares
