@@ -57,7 +57,8 @@ class Place:
     @property
     def index(self) -> int:
         """Index of the place's rectangle, which must exist."""
-        assert self.rectangle is not None
+        if self.rectangle is None:
+            raise ValueError("the place has no rectangle")
         return self.rectangle
 
 
@@ -170,8 +171,10 @@ class Description:
         for probe in self.probes:
             if probe.quantity == name:
                 return probe.signals
-        (found,) = {signal for signal in (*self.controls(), *self.diagrams) if signal.endswith(f".{name}")}
-        return (found,)
+        found = {signal for signal in (*self.controls(), *self.diagrams) if signal.endswith(f".{name}")}
+        if len(found) != 1:
+            raise ValueError(f"{name}: expected a quantity or a signal, got {sorted(found)}")
+        return tuple(found)
 
     def events(self, samples: Samples, ray: Ray) -> list[Event]:
         """List what the hardware did for the pixel."""
