@@ -159,7 +159,7 @@ def run_jobs(
             if there:
                 results[place] = result
     if results:
-        console.print(f"resumed: {len(results)} of {len(jobs)} {what} are kept from an earlier run")
+        console.print(f"already there: {len(results)} of {len(jobs)} {what}")
     columns = TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn()
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("", total=before + len(jobs), completed=before + len(results))

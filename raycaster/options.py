@@ -91,7 +91,7 @@ class CommandParser(argparse.ArgumentParser):
         given = [one for word in words for one in self._translated(str(word))]
         self._refuse_unknown(given)
         arguments = super().parse_intermixed_args(given)
-        arguments.command_line = shlex.join([*self.prog.split(), *map(str, words)])
+        arguments.command_line = shlex.join([*self.prog.split(), *given])
         return arguments
 
     def error(self, message: str) -> NoReturn:

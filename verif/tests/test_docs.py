@@ -217,7 +217,7 @@ def test_figures_are_kept(tmp_path: Path, monkeypatch):
     parser.add_argument("--family")
     outcomes.keep(parser.parse_args([]), {"cells": 3}, scope, decided)
     assert not list(tmp_path.iterdir())
-    words = ["--keep", "results/one.json", "--family", "ecp5"]
+    words = ["KEEP=results/one.json", "--family", "ecp5"]
     outcomes.keep(parser.parse_args(words), {"cells": 3}, scope, decided, left_out="clocks")
     kept = outcomes.kept_outcome(tmp_path / "results" / "one.json")
     assert kept.command == "raycaster area --family ecp5"

@@ -52,7 +52,7 @@ def squares(tmp_path):
 def test_kept_results_are_not_computed_again(squares, capsys):
     assert squares([1, 2, 3], wrong=[3]) == (None, [1, 2, 3])
     assert squares([0, 1, 2, 3]) == ([0, 1, 4, 9], [0, 3])
-    assert "resumed: 2 of 4 squares are kept" in capsys.readouterr().out
+    assert "already there: 2 of 4 squares" in capsys.readouterr().out
     assert squares([0, 1, 2, 3], fresh=True) == ([0, 1, 4, 9], [0, 1, 2, 3])
 
 
