@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import time
@@ -12,7 +11,7 @@ from pathlib import Path
 
 from raycaster.docs.pages import PAGES, ROOT, need_clone
 from raycaster.errors import UserError
-from raycaster.options import FROM_MAKE, CommandParser
+from raycaster.options import CommandParser, outside_make
 from raycaster.output import Console, Table
 from raycaster.tools import find_program
 
@@ -48,13 +47,6 @@ def left_out(command: str) -> str | None:
     """Return the reason why a command is not run, or None if it is run."""
     missing = (tool for start, tool in NEEDED.items() if command.startswith(start) and find_program(tool) is None)
     return LEFT_OUT.get(command) or next((f"{tool} is not on the path" for tool in missing), None)
-
-
-def outside_make() -> dict[str, str]:
-    """Return the environment without the settings of a make that runs this program."""
-    return {
-        name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", FROM_MAKE)
-    }
 
 
 def run(command: str, log: Path) -> tuple[int, float]:

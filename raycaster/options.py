@@ -154,6 +154,13 @@ def _from_make() -> bool:
     return bool(os.environ.get(FROM_MAKE))
 
 
+def outside_make() -> dict[str, str]:
+    """Return the environment without the settings of a make that runs this program."""
+    return {
+        name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", FROM_MAKE)
+    }
+
+
 def _program() -> str:
     """Return the program's name as the user types it; make installs it below `.venv`."""
     return ".venv/bin/raycaster" if _from_make() else "raycaster"

@@ -24,7 +24,7 @@ from raycaster.digests import PAGES
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.jobs import add_fresh_option, positive
-from raycaster.options import CommandParser
+from raycaster.options import CommandParser, outside_make
 from raycaster.outcomes import Check, add_keep_option, keep
 from raycaster.output import Console
 from raycaster.sim import ensure_tools
@@ -218,7 +218,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     # Each worker gets one test at a time, so that the longest begin first.
     words = ["-q", "-n", str(arguments.jobs), "--dist", "load", "--maxschedchunk", "1", "--durations", "10"]
     plugin = ["-p", "raycaster.verif.everything", "--outcomes", str(path)]
-    process = subprocess.Popen([sys.executable, "-m", "pytest", *words, *plugin, str(TESTS)], cwd=root)
+    command = [sys.executable, "-m", "pytest", *words, *plugin, str(TESTS)]
+    process = subprocess.Popen(command, cwd=root, env=outside_make())
     try:
         code = process.wait()
     except KeyboardInterrupt:  # pytest gets it too

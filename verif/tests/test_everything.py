@@ -74,6 +74,7 @@ def test_quick(number):
     ran(f"quick{number}")
 def test_long():
     ran("long")
+    assert "RAYCASTER_FROM_MAKE" not in os.environ
     time.sleep(0.5)
 def test_wrong():
     ran("wrong")
@@ -97,6 +98,7 @@ def clone(tmp_path, monkeypatch, names_for_digests):
     # Each run starts two interpreters, which load only the plugin that they need.
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
     monkeypatch.setenv("PYTEST_PLUGINS", "xdist.plugin")
+    monkeypatch.setenv("RAYCASTER_FROM_MAKE", "1")
     monkeypatch.setenv("RAN", str(tmp_path / "ran"))
     monkeypatch.setenv("MENDED", str(tmp_path / "mended"))
     return tmp_path / "clone"
