@@ -110,7 +110,7 @@ def test_fifo(fault, tmp_path):
     assert (tmp_path / "build" / "fifo" / "fifo.fst").is_file()
 
 
-@pytest.mark.slow_sets("fault")
+@pytest.mark.slow_sets("fault", "verilator")
 @pytest.mark.parametrize(
     ("simulator", "fault", "waves"),
     [

@@ -12,7 +12,7 @@ from raycaster.golden.exact import ExactModel
 from raycaster.rtl.beam.beam_pass import beam_pass
 
 
-@pytest.mark.slow_sets("1")
+@pytest.mark.slow_sets("0", "1")
 @by(mirrors=[0, 1, 2])
 def test_beam_pass(mirrors, leaf_of, random):
     config = beam_config(screen="tiny", rectangles=3, reflections=2, scale=1)
