@@ -11,6 +11,7 @@ from cocotb.handle import HierarchyObject
 from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE
 from raycaster.scene import Camera, Light, Rectangle, Scene
 from raycaster.sim.harness import Harness
+from raycaster.sim.register_model import Agent
 from raycaster.verif.random_scenes import random_scene
 
 LIT_SCENES, LIT_RECTANGLES = 12, 6
@@ -37,6 +38,18 @@ async def every_bit_of_the_live_scene(bench: HierarchyObject) -> None:
         await harness.bus.commit(reflections=0)
         golden = harness.golden(scene, 0)
         harness.expect_picture(await harness.monitor.frame(), golden, "all ones" if high else "all zeros")
+
+
+@cocotb.test()
+async def every_constant(bench: HierarchyObject) -> None:
+    """The registers that describe the design read as its configuration says."""
+    harness = Harness(bench)
+    await harness.reset()
+    agent = Agent(harness.configuration)
+    for name in ("id", "version", "engine", "size"):
+        address = agent.registers[name].address
+        agent.bus["bus_address"] = address
+        assert await harness.bus.read_word(address) == agent.read({}), name
 
 
 @cocotb.test()
