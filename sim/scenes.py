@@ -419,7 +419,7 @@ def _wrong_pixels(kept: Kept) -> str:
 CHECKS = (
     Check("every packaged scene, full size", "seed, culling; exact: `TURN`, `LIGHT`", ["sim-seed"], _wrong_pixels),
     Check("scenes at 1920x1080, two pixels per clock", "beam", ["sim-beam-1920x1080"], _wrong_pixels),
-    Check("every plain scene built in, full size", "exact, no culling", ["sim-exact-fixed"], _wrong_pixels),
+    Check("every packaged scene built in, full size", "exact, no culling", ["sim-exact-fixed"], _wrong_pixels),
     Check("every plain scene through the ECP5 netlist, tiny, 16 units", "seed", ["sim-netlist"], _wrong_pixels),
 )
 

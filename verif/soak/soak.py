@@ -65,7 +65,7 @@ def _wrong_pixels(*kept: Outcome) -> str:
 CHECKS = (
     Check("random scenes, surfaces of all kinds, full size", "seed, culling", ["soak-seed"], _wrong_pixels),
     Check(
-        "random and stiff scenes, turned cameras and surfaces of all kinds, full size",
+        "random scenes and stiff ones, these with lights; turned cameras and surfaces of all kinds, full size",
         "exact, no culling", ["soak-exact", "soak-exact-stiff"], _wrong_pixels,
     ),
     Check(
