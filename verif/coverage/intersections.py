@@ -8,6 +8,7 @@ counted for the primary rays of a group if one of them hits it: the culler may l
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -34,10 +35,17 @@ _GIVEN_UP: dict[str, tuple[Pattern, ...]] = {
 _WITHOUT_MIRROR: dict[str, tuple[Pattern, ...]] = {
     "primary rays have left no mirror": ((None, None, "before mirror", None, "primary"),),
 }
+_CULLED: dict[str, tuple[Pattern, ...]] = {
+    "a group's primary rays run the same way from one point; a plane that none hits may be left out": (
+        (None, None, "on plane", None, "primary"),
+        (None, None, "behind", None, "primary"),
+        ("z", None, "parallel", None, "primary"),
+    ),
+}
 
 
-def _cross_of(engine: Engine) -> Cross:
-    """Return the intersections of an engine that culls, if it can."""
+def _every_kind(engine: Engine) -> Cross:
+    """Return the intersections of an engine, of all of its designs."""
     # In order of precedence: parallel to the plane; from a point on it; running away from it; in the seed engine, a
     # quotient on u or v that is too large; in the others, between the mirrored eye and the mirror, or in the mirror's
     # plane on an axis that was met there, though within the bounds; outside the bounds; exactly on a bound; inside.
@@ -67,8 +75,15 @@ def _cross_of(engine: Engine) -> Cross:
     return Cross("intersections", points, impossible | (_GIVEN_UP if engine.divides else _WITHOUT_MIRROR))
 
 
-INTERSECTIONS = {name: _cross_of(engine) for name, engine in ENGINES.items()}
+INTERSECTIONS = {name: _every_kind(engine) for name, engine in ENGINES.items()}
 """By engine, the intersections of a ray with a rectangle."""
+
+
+def cross_of(config: Configuration) -> Cross:
+    """Return the intersections that a design counts: with culling, a group's primary rays meet fewer kinds."""
+    cross = INTERSECTIONS[config.engine]
+    fewer = _CULLED if config.culling and not config.facts.divides else {}
+    return replace(cross, impossible={**cross.impossible, **fewer})
 
 
 def count_intersections(scene: Scene, config: Configuration) -> np.ndarray:

@@ -42,7 +42,7 @@ from raycaster.sim.simulator import (
 from raycaster.verif.campaign import Campaign, bench_digest, run_campaign
 from raycaster.verif.coverage.code import KINDS, Judgement, Point, describe, judge, load_explanations, read_counts
 from raycaster.verif.coverage.functional import Cross, FunctionalCoverage
-from raycaster.verif.coverage.intersections import INTERSECTIONS, count_intersections
+from raycaster.verif.coverage.intersections import count_intersections, cross_of
 from raycaster.verif.coverage.lighting import HIT_POINTS, count_hit_points
 from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.soak.soak import BENCH as SOAK
@@ -241,7 +241,7 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
 
 def functions_of(design: Configuration) -> list[tuple[Cross, Callable[..., np.ndarray]]]:
     """List the crosses of a design, each with the function that counts its bins in a scene."""
-    intersections = INTERSECTIONS[design.engine], count_intersections
+    intersections = cross_of(design), count_intersections
     return [intersections, (HIT_POINTS, count_hit_points)] if design.light else [intersections]
 
 

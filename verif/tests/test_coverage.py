@@ -24,7 +24,7 @@ from raycaster.scene import Camera, Rectangle, Scene, dump_scene, load_scene
 from raycaster.sim.simulator import build_model, convert
 from raycaster.verif.coverage.code import EVERY, Explanation, Judgement, describe, judge, load_explanations, read_counts
 from raycaster.verif.coverage.functional import RAYS, Cross, FunctionalCoverage, traces
-from raycaster.verif.coverage.intersections import INTERSECTIONS, count_intersections
+from raycaster.verif.coverage.intersections import INTERSECTIONS, count_intersections, cross_of
 from raycaster.verif.coverage.lighting import HIT_POINTS, count_hit_points
 from raycaster.verif.coverage.measure import (
     DESIGNS,
@@ -278,6 +278,13 @@ def test_a_rectangle_that_the_culler_leaves_out_is_not_counted():
     groups = drawn.reshape(-1, config.units).any(axis=1)
     assert 0 < groups.sum() < len(groups)
     assert count_intersections(scene, config).sum() == groups.sum() * config.units
+    # Without culling, primary rays of this design run away from some planes; with it, none is counted for them.
+    culling, plain = (configure(engine="exact", screen="tiny", culling=culling) for culling in (True, False))
+    busy = random_scene(3, culling.rectangles, 1, culling.looks)
+    FunctionalCoverage(cross_of(culling)).add(count_intersections(busy, culling))
+    FunctionalCoverage(cross_of(plain)).add(count_intersections(busy, plain))
+    with pytest.raises(ValueError, match="primary: declared impossible"):
+        FunctionalCoverage(cross_of(culling)).add(count_intersections(busy, plain))
 
 
 def crossing(table: Rectangles, index: int, origin: Vector, slope: Vector, t: Fraction) -> tuple[bool, bool]:
