@@ -63,9 +63,9 @@ def new_figure(height: float, rows: int = 1, columns: int = 1, **options) -> tup
 
 
 @styled
-def save(figure: Figure, path: Path) -> None:
-    """Write a reproducible SVG, without a date."""
-    figure.savefig(path, metadata={"Date": None})
+def save(figure: Figure, path: Path, **metadata: str) -> None:
+    """Write a reproducible SVG, without a date; metadata such as Title is as for matplotlib's `savefig`."""
+    figure.savefig(path, metadata={"Date": None, **metadata})
 
 
 def _legend(figure: Figure, columns: int = 2, **options) -> None:
