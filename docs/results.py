@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """`raycaster results`: measure the engines or their scaling, and write all measured tables into the pages.
 
-With --stale it only lists the stored figures that no longer hold.
+With --list or --stale it only lists the stored figures.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from raycaster.configuration import configure
+from raycaster.digests import digest
 from raycaster.docs import beside, engine_figures, scaling
 from raycaster.docs.facts import facts
 from raycaster.docs.pages import HERE, need_clone, render_all
@@ -47,6 +48,15 @@ def _measure_beside(arguments: argparse.Namespace, console: Console) -> int:
     return int(bool(failures))
 
 
+def _show_all(console: Console) -> None:
+    """List the stored figures, each with a digest of everything that affects it."""
+    shown = Table("results/", "measured", "commit", "digest", "", texts=("measured", "commit", "digest", ""))
+    for one in outcomes().values():
+        deciding = digest(one.provenance) if one.provenance else ""
+        shown.add_row(one.name, one.date, one.commit, deciding, "stale" if one.changed else "holds")
+    console.print(shown)
+
+
 def _show_stale(console: Console) -> None:
     """List the stored figures that no longer hold, with the command that measures each again."""
     shown = Table("results/", "changed since", "measured again by", texts=("changed since", "measured again by"))
@@ -63,6 +73,7 @@ def command_parser() -> CommandParser:
     parser = CommandParser("results", __doc__, "--render")
     asked = parser.add_mutually_exclusive_group()
     asked.add_argument("--render", action="store_true", help="only update the pages, from the files in results/")
+    asked.add_argument("--list", action="store_true", help="list the figures in results/, with dates and digests")
     asked.add_argument("--stale", action="store_true", help="list the figures in results/ that no longer hold")
     asked.add_argument("--scaling", action="store_true", help="measure designs of many sizes (half an hour)")
     asked.add_argument(
@@ -90,8 +101,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = command_parser().parse_args(argv)
     need_clone()
     console = Console()
-    if arguments.stale:
-        _show_stale(console)
+    if arguments.list or arguments.stale:
+        (_show_all if arguments.list else _show_stale)(console)
         return 0
     code = 0
     if not arguments.render:

@@ -149,11 +149,15 @@ GOOD = re.findall(r"```python\n(.*?)```", (ROOT / "docs/extend.md").read_text(),
 @pytest.mark.parametrize(
     ("right", "wrong", "fault"),
     [
-        ("if dim:", "if dimm:", "32: Local variable may be referenced before assignment: dimm"),
-        ("half.word.next =", "half.wrd.next =", "26: AttributeError: 'Colour' object has no attribute 'wrd'"),
-        ("half = Colour()", "half = colour_of()", "22: NameError: name 'colour_of' is not defined"),
-        ("half = Colour()", "half = Colour(", "22: '(' was never closed"),
-        ("dimmed.word.next = colour", "dimmed.word.next = brighter(colour", "35: "),
+        ("if dim:", "if dimm:", "34: Local variable may be referenced before assignment: dimm"),
+        (
+            "dimmed.word.next = half",
+            "dimmed.wrd.next = half",
+            "35: AttributeError: 'Colour' object has no attribute 'wrd'",
+        ),
+        ("unsigned(CHANNEL_BITS)", "unsinged(CHANNEL_BITS)", "22: NameError: name 'unsinged' is not defined"),
+        ("(red=red, ", "(", "30: ValueError: Colour: red: missing, or no field"),
+        ("dimmed.word.next = colour", "dimmed.word.next = brighter(colour", "37: '(' was never closed"),
     ],
 )
 def test_a_fault_in_a_block_is_one_line(right: str, wrong: str, fault: str, tmp_path: Path, monkeypatch, capsys):
