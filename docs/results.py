@@ -75,7 +75,7 @@ def command_parser() -> CommandParser:
     asked.add_argument("--render", action="store_true", help="only update the pages, from the files in results/")
     asked.add_argument("--list", action="store_true", help="list the figures in results/, with dates and digests")
     asked.add_argument("--stale", action="store_true", help="list the figures in results/ that no longer hold")
-    asked.add_argument("--scaling", action="store_true", help="measure designs of many sizes (half an hour)")
+    asked.add_argument("--scaling", action="store_true", help="measure designs of many sizes (a quarter of an hour)")
     asked.add_argument(
         "--beside",
         nargs="*",
