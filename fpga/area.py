@@ -371,7 +371,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     announce("area")
     if arguments.route_only:
         with console.waiting("placing and routing"):
-            routed = route(config, arguments.output / "route", arguments.seed)
+            # A directory per run, so that two runs at a time do not replace each other's files.
+            routed = route(config, arguments.output / f"{config.name}-seed-{arguments.seed}", arguments.seed)
         show_routed(routed, console)
         keep(arguments, {"configuration": config.name, **routed}, scope_of(config), provenance, "a run on a chip")
         return

@@ -170,8 +170,8 @@ def nextpnr(monkeypatch):
 
 
 def test_placing_and_routing_alone(tmp_path, monkeypatch, capsys, names_for_digests, nextpnr):
-    """nextpnr's report is kept with its seed."""
-    calls = nextpnr(81.256)
+    """nextpnr's report is kept with its seed; a run with another seed has files of its own."""
+    calls = nextpnr(81.256, 81.256)
     monkeypatch.setattr(area, "find_program", lambda name: name)
     monkeypatch.setattr(area, "prepare_wasm", lambda name: None)
     monkeypatch.setattr(area, "register_products", lambda netlist: 0)
@@ -179,8 +179,10 @@ def test_placing_and_routing_alone(tmp_path, monkeypatch, capsys, names_for_dige
     options = ("--engine", "beam", "--rows", "180", "--scale", "6", "--pixels", "2", "--route-only", "--seed", "3")
     kept = tmp_path / "routed.json"
     area.main([*options, "--output", str(tmp_path / "area"), "--keep", str(kept)])
-    [(command, _)] = calls
-    assert command[command.index("--seed") + 1] == "3"
+    area.main([*options, "--seed", "4", "--output", str(tmp_path / "area")])
+    command = calls[0][0]
+    assert [call[0][call[0].index("--seed") + 1] for call in calls] == ["3", "4"]
+    assert len([*(tmp_path / "area").glob("*/report.json")]) == 2
     assert command[command.index("--freq") + 1] == "74.25"
     assert json.loads(kept.read_text())["figures"] == {
         "configuration": "beam-vga180-s6-u2-r12-m1-c8", "seed": 3, "clock_mhz": 74.25, "routed_mhz": 81.26,
