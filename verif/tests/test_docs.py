@@ -25,20 +25,9 @@ from raycaster.convert import provenance
 from raycaster.convert.take_home import TOP
 from raycaster.digests import code_digest, uncommented
 from raycaster.docs import __main__ as manual
-from raycaster.docs import (
-    blocks,
-    commands,
-    drawings,
-    engine_figures,
-    facts,
-    pages,
-    proofs,
-    results,
-    scaling,
-    tables,
-    timing,
-)
+from raycaster.docs import blocks, commands, drawings, engine_figures, facts, pages, proofs, scaling, tables, timing
 from raycaster.docs.commands import commands_of
+from raycaster.docs.results import main as results
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.fpga.cells import Area
@@ -286,13 +275,13 @@ def test_stored_figures_are_listed(monkeypatch, capsys):
     """--list has the date, commit and digest of each figure; --stale has the commands of those that do not hold."""
     kept = outcomes.Outcome("area", "raycaster area", "2026-11-24", "1234567", {}, {}, {"designs": {"a": "1"}})
     other = replace(kept, name="fit", command="raycaster fit", provenance={"designs": {"a": "2"}}, changed=["a", "b"])
-    monkeypatch.setattr(results, "outcomes", lambda: {one.name: one for one in (kept, other)})
-    assert results.main(["--list"]) == 0
+    monkeypatch.setattr("raycaster.docs.results.outcomes", lambda: {one.name: one for one in (kept, other)})
+    assert results(["--list"]) == 0
     lines = capsys.readouterr().out.splitlines()
     [first], [second] = ([line.split() for line in lines if line.split()[:1] == [name]] for name in ("area", "fit"))
     assert first == ["area", "2026-11-24", "1234567", first[3], "holds"]
     assert second == ["fit", "2026-11-24", "1234567", second[3], "stale"] and first[3] != second[3]
-    assert results.main(["--stale"]) == 0
+    assert results(["--stale"]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     assert "fit a, b raycaster fit --keep results/fit.json 1 of 2 are stale." in shown and "area" not in shown
 
