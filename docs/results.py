@@ -16,7 +16,7 @@ from raycaster.docs import beside, engine_figures, scaling
 from raycaster.docs.facts import facts
 from raycaster.docs.pages import HERE, need_clone, render_all
 from raycaster.docs.proofs import proofs
-from raycaster.docs.tables import listed, outcomes, tables
+from raycaster.docs.tables import keep_digests, listed, outcomes, tables
 from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, Provenance, add_keep_option, keep, kept_outcome
 from raycaster.output import Console, Table, printable
@@ -111,6 +111,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments.keep = arguments.keep or RESULTS / f"{name}.json"
         code = measures[name](arguments, console)
         outcomes.cache_clear()
+    keep_digests()
     for page in render_all(facts() | tables() | proofs()):
         print(printable(f"written: {page}"))
     return code

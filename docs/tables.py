@@ -14,6 +14,7 @@ from dataclasses import replace
 from fnmatch import fnmatch
 from functools import cache
 from importlib.metadata import distributions
+from typing import Any
 
 from filelock import FileLock
 
@@ -22,7 +23,7 @@ from raycaster.cli.__main__ import loaded
 from raycaster.cli.commands import COMMANDS
 from raycaster.configuration import Configuration
 from raycaster.convert.provenance import ROOT, Provenance, verilog_digest
-from raycaster.digests import code_digest
+from raycaster.digests import code_digest, tool_versions
 from raycaster.docs import beside, engine_figures, scaling
 from raycaster.errors import UserError
 from raycaster.fpga import area, bitstream, fit, tiny_tapeout
@@ -49,6 +50,15 @@ DECIDING = (
 
 HARDWARE = ("hdl", "rtl", "convert", "raycaster")
 """Sources on which the Verilog of a design may depend: `convert` imports nothing else."""
+
+CONVERTERS = ("myhdl", "numpy", "systemrdl-compiler")
+"""Packages on which the Verilog of a design may depend."""
+
+DIGESTS = RESULTS / "verilog.digests"
+"""Digests of the measured designs' Verilog, in JSON; they hold while the sources and packages above stay the same."""
+
+STORE = ROOT / "build" / "provenance.json"
+"""Digests of everything that affects the stored figures, when they were last computed."""
 
 JOBS = 2
 
@@ -137,17 +147,19 @@ def _current(commands: Sequence[str]) -> Mapping[str, Digests | str]:
     """Return the current digests for the figures of these commands, or the reason why a command is refused.
 
     Digests are stored in build/ and computed again if a source or a tool has changed; those of designs, which take most
-    of the time, only if the hardware or its conversion has.
+    of the time, only if the hardware or its conversion has. A new clone takes these from `DIGESTS`.
     """
-    store, console = ROOT / "build" / "provenance.json", Console(stderr=True)
-    state, hardware = _state(DECIDING), _state(HARDWARE)
+    console = Console(stderr=True)
+    state = _state(DECIDING, [one.name for one in distributions()])
+    hardware = _state(HARDWARE, CONVERTERS)
     # New processes, because MyHDL searches all loaded modules repeatedly, and a test has loaded many.
     pool = processes(JOBS, spawned=True)
-    store.parent.mkdir(exist_ok=True)
-    with FileLock(store.with_suffix(".lock")):
-        stored = json.loads(store.read_text()) if store.exists() else {}
+    STORE.parent.mkdir(exist_ok=True)
+    with FileLock(STORE.with_suffix(".lock")):
+        stored = json.loads(STORE.read_text()) if STORE.exists() else {}
         found = stored["found"] if stored.get("state") == state else {}
-        known = stored["designs"] if stored.get("hardware") == hardware else {}
+        kept = [one for one in (stored, _kept_digests()) if one.get("hardware") == hardware]
+        known = kept[0]["designs"] if kept else {}
         wanted = [command for command in commands if command not in found]
         if wanted:
             described = run_jobs("commands", _described, wanted, pool, console)
@@ -156,15 +168,28 @@ def _current(commands: Sequence[str]) -> Mapping[str, Digests | str]:
             known |= zip((one.name for one in new), run_jobs("designs", _digested, new, pool, console), strict=True)
             made = (each.digests(known) if isinstance(each, Provenance) else each for each in described)
             found |= zip(wanted, made, strict=True)
-            partly = store.with_suffix(".partial")
+            partly = STORE.with_suffix(".partial")
             partly.write_text(json.dumps({"state": state, "found": found, "hardware": hardware, "designs": known}))
-            partly.replace(store)
+            partly.replace(STORE)
     return found
 
 
-def _state(places: Sequence[str]) -> list[str]:
-    packages = sorted({f"{one.name} {one.version}" for one in distributions()})  # one on two paths comes twice
-    return [*(code_digest(ROOT / place, ROOT) for place in places), *packages]
+def _state(places: Sequence[str], packages: Sequence[str]) -> list[str]:
+    versions = sorted(tool_versions(*packages).items())
+    return [*(code_digest(ROOT / place, ROOT) for place in places), *(" ".join(each) for each in versions)]
+
+
+def _kept_digests() -> dict[str, Any]:
+    return json.loads(DIGESTS.read_text()) if DIGESTS.exists() else {}
+
+
+def keep_digests() -> None:
+    """Write `DIGESTS`, for the stored figures' designs as they are now."""
+    now = _current(list(dict.fromkeys(one.command for one in outcomes().values())))
+    wanted = {name for each in now.values() if not isinstance(each, str) for name in each["designs"]}
+    stored = json.loads(STORE.read_text())
+    designs = {name: digest for name, digest in sorted(stored["designs"].items()) if name in wanted}
+    DIGESTS.write_text(f"{json.dumps({'hardware': stored['hardware'], 'designs': designs}, indent=1)}\n")
 
 
 def _described(command: str) -> Provenance | str:

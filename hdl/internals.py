@@ -45,10 +45,12 @@ class SignedSlice(SliceSignal):
 
     def _genfuncSlice(self):
         set_next: Any = SignalType.next.fset
+        word, high, low = bits_of(self)
+        sign = 1 << high - low if self.min < 0 else 0
         while True:
-            bits = self._sig[self._left : self._right]
-            set_next(self, bits.signed() if self.min < 0 else bits)
-            yield self._sig
+            bits = int(word.val) >> low & (2 << high - low) - 1
+            set_next(self, (bits ^ sign) - sign)
+            yield word
 
 
 def bits_of(part: SliceSignal) -> tuple[SignalType, int, int]:

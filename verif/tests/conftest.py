@@ -102,8 +102,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.fixture(autouse=True)
 def one_set_in_myhdl(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Simulate MyHDL for one parameter set of each leaf test, or for all that are recorded; the Verilog for all."""
+    """Simulate MyHDL for one parameter set of each leaf test, or for all that are recorded; the Verilog for all.
+
+    With all cases of the long tests, unless slow tests are left out.
+    """
     recorded = RECORD_VARIABLE in os.environ
+    monkeypatch.setattr(LeafBench, "few", not recorded and request.config.option.markexpr == "not slow")
     monkeypatch.setattr(Leaf, "with_myhdl", recorded or request.node.stash.get(WITH_MYHDL, True))
     monkeypatch.setattr(Leaf, "recorder", record_test if recorded else None)
 

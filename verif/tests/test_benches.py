@@ -24,13 +24,14 @@ EVERYTHING = dict.fromkeys(EXACT.looks, True)
 FULL_SCENE = ROOT / "scenes" / "mirror_room.toml"
 DESIGNS = {
     **{engine: ("verilator", configure(engine=engine, screen="tiny"), FULL_SCENE) for engine in ENGINES},
+    "small": ("verilator", TINY["exact"], SMALL_SCENE),
     "icarus": ("icarus", configure(screen="tiny", units=8, rectangles=3, culling=False), SMALL_SCENE),
     "everything": ("icarus", configure(engine="exact", screen="tiny", rectangles=3, **EVERYTHING), SMALL_SCENE),
 }
 """Simulator, design and scene."""
 
 
-@pytest.mark.slow_sets(quick=["register-exact", "traffic-exact"])
+@pytest.mark.slow_sets(quick=["register-small", "traffic-small"])
 @pytest.mark.parametrize("design", DESIGNS)
 @pytest.mark.parametrize("name", ["register", "traffic"])
 def test_bench(bench: Bench, name: str, design: str):

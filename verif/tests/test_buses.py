@@ -100,8 +100,9 @@ RESTING = {
 
 
 @pytest.mark.slow_sets(
-    "answered-after-reset", "live-in-mid-frame", "rectangles-too-early", "unmapped-aliases", "waits-in-a-burst"
-)
+    "a-commit", "a-fetch", "answered-after-reset", "live-in-mid-frame", "rectangles-too-early", "unmapped-aliases",
+    "waits-in-a-burst",
+)  # fmt: skip
 @pytest.mark.parametrize("fault", FAULTS | RESTING)
 def test_a_fault_is_noticed_in_traffic(noticed: Noticed, fault):
     *where, complaint = (FAULTS | RESTING)[fault]

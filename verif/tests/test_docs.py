@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import importlib.metadata
+import json
 import re
 import shlex
 import shutil
@@ -271,6 +272,19 @@ def test_only_what_decides_a_figure_makes_it_stale(monkeypatch):
     assert tables._changed(then, "no such scene") == ["the command, which is refused: no such scene"]
 
 
+@pytest.mark.slow_sets("all")
+@pytest.mark.parametrize("measured", ["raycaster verify all", "all"])
+def test_stored_digests_are_those_of_the_designs(measured):
+    """A new clone takes them for granted as long as the hardware's code is the same."""
+    described = [
+        tables._described(one.command) for one in tables.outcomes().values() if measured in (one.command, "all")
+    ]
+    designs = {design.name: design for each in described for design in getattr(each, "designs", ())}
+    stored = json.loads(tables.DIGESTS.read_text())["designs"]
+    assert len(designs) == (3 if measured != "all" else len(stored))
+    assert {name: tables._digested(design) for name, design in designs.items()}.items() <= stored.items()
+
+
 def test_stored_figures_are_listed(monkeypatch, capsys):
     """--list has the date, commit and digest of each figure; --stale has the commands of those that do not hold."""
     kept = outcomes.Outcome("area", "raycaster area", "2026-11-24", "1234567", {}, {}, {"designs": {"a": "1"}})
@@ -287,16 +301,22 @@ def test_stored_figures_are_listed(monkeypatch, capsys):
 
 
 def test_digests_are_stored(monkeypatch, tmp_path: Path):
-    """Commands are described again after any change, designs are digested again only after one to the hardware."""
+    """Commands are described again after any change, designs are digested again only after one to the hardware.
+
+    A new clone takes the kept digests of designs.
+    """
     versions, asked = {tables.DECIDING: 0, tables.HARDWARE: 0}, []
 
     def run(what, function, jobs, *_):
         asked.append((what, len(jobs)))
         return list(map(function, jobs))
 
-    monkeypatch.setattr(tables, "ROOT", tmp_path)
+    kept = outcomes.Outcome("area", "area", "", "", {}, {}, {})
+    monkeypatch.setattr(tables, "STORE", tmp_path / "build" / "provenance.json")
+    monkeypatch.setattr(tables, "DIGESTS", tmp_path / "digests")
+    monkeypatch.setattr(tables, "outcomes", lambda: {"area": kept})
     monkeypatch.setattr(tables, "run_jobs", run)
-    monkeypatch.setattr(tables, "_state", lambda places: [str(versions[places])])
+    monkeypatch.setattr(tables, "_state", lambda places, packages: [str(versions[places])])
     monkeypatch.setattr(tables, "_described", lambda command: provenance.Provenance([configure()]))
     monkeypatch.setattr(tables, "_digested", lambda design: f"digest {versions[tables.HARDWARE]}")
     found = []
@@ -304,9 +324,12 @@ def test_digests_are_stored(monkeypatch, tmp_path: Path):
         for places in changed:
             versions[places] += 1
         found.append(tables._current(["area"])["area"]["designs"][configure().name])
-    assert found == ["digest 0", "digest 0", "digest 0", "digest 1"]
+    tables.keep_digests()
+    tables.STORE.unlink()
+    found.append(tables._current(["area"])["area"]["designs"][configure().name])
+    assert found == ["digest 0", "digest 0", "digest 0", "digest 1", "digest 1"]
     assert asked == [(what, 1) for what in ("commands", "designs")] + [
-        ("commands", 1), ("designs", 0), ("commands", 1), ("designs", 1),
+        ("commands", 1), ("designs", 0), ("commands", 1), ("designs", 1), ("commands", 1), ("designs", 0),
     ]  # fmt: skip
 
 

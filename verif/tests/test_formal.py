@@ -31,7 +31,7 @@ HOST = chosen("host-transfers", "6 bits, 1 and 2 cycles")
 
 @pytest.mark.slow_sets(
     "avalon-agent", "beam-tester-products-beam-vga240-s2-u1-r2-m1-c8 folded", "finder-quotients", "fold-exact",
-    "line-start",
+    "fold-products", "line-start",
 )  # fmt: skip
 @pytest.mark.parametrize("proof", [proof for proof in FAULTY if proof.small], ids=str)
 def test_holds(proof, output):
@@ -42,10 +42,10 @@ def test_holds(proof, output):
 
 @pytest.mark.slow_sets(
     quick=[
-        "apb", "axi4lite", "blend-exact", "cell-products", "contest-products", "eye-exact", "fold-products",
-        "group-safe", "host-transfers", "line-sections", "nearest-products", "row-setup-beam", "shadow-order",
-        "shadow-products", "shares-exact", "slope-exact", "tester-exact", "video-timing-toy", "walked-products",
-        "wishbone",
+        "apb", "axi4lite", "blend-exact", "cell-products", "contest-products", "eye-exact",
+        "fold-products-beam-vga240-s2-u1-r2-m1", "group-safe", "host-transfers", "line-sections", "nearest-products",
+        "row-setup-exact", "shadow-order", "shadow-products", "shares-exact", "slope-exact", "tester-exact",
+        "video-timing-toy", "walked-products", "wishbone",
     ]
 )  # fmt: skip
 @pytest.mark.parametrize("proof", FAULTY, ids=str)

@@ -48,7 +48,7 @@ def read_results(directory: Path) -> list[dict]:
 
 def test_a_sound_design_comes_back(tmp_path: Path):
     """After jumps of the line counter, which lose syncs, after resets and after misuse, the picture soon recovers."""
-    results = run_cases(convert(SMALL, BUILD), tmp_path, {"video_generator": ("y",)}, range(24))
+    results = run_cases(convert(SMALL, BUILD), tmp_path, {"video_generator": ("y",)}, range(12))
     assert {result["outcome"] for result in results} <= {"StartScreen", "commit", "unseen"}
     assert Counter(result["kind"] for result in results).keys() == set(KINDS)
     flipped = [result for result in results if result["kind"] == "upset"]

@@ -209,7 +209,7 @@ def check_tester(leaf_of: Callable[..., Bench], block: Callable, config: Configu
     seen = set()
     # The more mirrors, the fewer of them meet in one point.
     count, most = (3600 * max(1, config.reflections - 1), None) if folds else (1500, 0)
-    for table, chosen, camera, slope, mirrors in beam_rays(random, config, count, most):
+    for table, chosen, camera, slope, mirrors in beam_rays(random, config, leaf.some(count), most):
         if bool(mirrors) != folds:
             continue
         fold = named("fold", folded(camera, slope, mirrors)) if folds else {}

@@ -96,7 +96,7 @@ def check_ray_unit(leaf: Bench, config: Configuration, random: np.random.Generat
     """Step rays through a unit as its control does; compare MyHDL and Verilog with the golden model."""
     slopes = primary_slopes(config.screen_geometry)
     rows, columns, _ = slopes.shape
-    pixels = []
+    pixels, rays = [], leaf.some(rays)
     # Numbers of surfaces that a ray hits; each must occur, from none to the most.
     fates, every_fate = set(), set(range(config.reflections + 2))
     while len(pixels) < rays or fates != every_fate:

@@ -7,7 +7,7 @@ import inspect
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -79,6 +79,9 @@ class Bench(Leaf):
             with a type or a default is no port and is passed on. A port that is neither here nor in `PORTS` is a bit.
     """
 
+    few: ClassVar[bool] = False
+    """True if slow tests are left out, and with them most of the random cases of long leaf tests."""
+
     def __init__(self, block: Callable, directory: Path, config: Any = None, **given: Any):
         parameters = inspect.signature(block).parameters
         assert set(given) <= set(parameters), set(given) - set(parameters)
@@ -100,6 +103,10 @@ class Bench(Leaf):
         """By cycle, the inputs, as for `run_both`; negative numbers are two's complement."""
         self.expected: dict[int, Mapping[str, Any]] = defaultdict(dict)
         """By cycle of the stimulus, all or some outputs; None for don't care."""
+
+    def some(self, count: int) -> int:
+        """Return how many random cases to test: the count, or a third of it if slow tests are left out."""
+        return count // 3 if self.few else count
 
     @property
     def cycle(self) -> int:

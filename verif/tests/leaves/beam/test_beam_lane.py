@@ -29,7 +29,7 @@ def test_beam_lane(config, first, lines, leaf_of, random):
     leaf = leaf_of(beam_lane, config, enter=lambda: tied(0, 1), **row_ports_of(config))
     slopes, latency = primary_slopes(config.screen_geometry), beam_latency(config)
     leaf.stimulus = [{"next_column": 0}] * latency
-    for number in range(lines):
+    for number in range(leaf.some(lines)):
         view = any_view(random, config) if number % 2 else slopes[int(random.integers(len(slopes)))]
         camera, table, column = race(random, config, view)
         background = random.integers(256, size=3)

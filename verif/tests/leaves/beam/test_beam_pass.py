@@ -22,7 +22,7 @@ def test_beam_pass(mirrors, leaf_of, random):
     strobes = {"step": 0, "step_way": int(not mirrors), "step_bounds": 1, "step_slope": 2}
     quiet, latency = dict.fromkeys(strobes, 0), winner_latency(config)
     leaf.stimulus = [quiet] * latency
-    for _ in range(500):
+    for _ in range(leaf.some(500)):
         view = any_view(random, config)
         camera, table, column = race(random, config, view)
         # The row begins with any column.

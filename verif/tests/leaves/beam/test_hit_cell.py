@@ -19,7 +19,7 @@ def test_hit_cell(config, leaf_of, random):
     leaf = leaf_of(hit_cell, config, **widths, eye=9, cell_size=3)
     far, steepest = (1 << shift_bits(config) - 1) - 1, steepest_slope(config)
     leaf.case({})
-    while leaf.cycle < 8000:
+    while leaf.cycle < leaf.some(8000):
         turn, eye, back = int(random.integers(-far, far + 1)), any_place(random), int(random.integers(2))
         cell = int(random.integers(8))
         size = 8 << min(cell, 5)

@@ -51,8 +51,8 @@ def to_edge(random: np.random.Generator, config: Configuration, axis: int, plane
 def test_hit_cells(config, leaf_of, random):
     slopes = {"slope": lambda: Direction(exact_slope_bits(config) + 1)}
     leaf = leaf_of(hit_cells, config, **slopes, camera=Point, sight=lambda: Sight(index_bits(config)))
-    leaf.stimulus, cycle = [{} for _ in range(4000)], 0
-    for table, chosen, camera, ray, mirrors in beam_rays(random, config, 1200):
+    leaf.stimulus, cycle = [{} for _ in range(leaf.some(4000))], 0
+    for table, chosen, camera, ray, mirrors in beam_rays(random, config, leaf.some(1200)):
         for index in 8 * list(chosen):
             axis, plane, slope = int(table.axes[index]), any_place(random), ray
             eye, turned = seen_from(camera, slope, mirrors)
@@ -78,5 +78,5 @@ def test_hit_cells(config, leaf_of, random):
             sight = {"valid": 1, "odd_u": odd_u, "odd_v": odd_v, "index": number}
             leaf.expected[cycle + CELL_LATENCY] = named("sight", sight)
             cycle += 1
-    assert len(leaf.expected) > 400
+    assert len(leaf.expected) > leaf.some(400)
     leaf.check(settled=1 + CELL_LATENCY)

@@ -13,10 +13,10 @@ def test_nearest_of_two(config, leaf_of, random):
     latency = contest_latency(config)
     both = dict.fromkeys(("first", "second"), lambda: candidate_of(config))
     leaf = leaf_of(nearest_of_two, config, **both, latency=latency)
-    pairs = [(any_candidate(random, config), any_candidate(random, config)) for _ in range(3000)]
-    pairs += [close_candidates(random, config) for _ in range(1000)]
+    pairs = [(any_candidate(random, config), any_candidate(random, config)) for _ in range(leaf.some(3000))]
+    pairs += [close_candidates(random, config) for _ in range(leaf.some(1000))]
     for one, two in pairs:
         inputs = candidate_ports(config, "first", one) | candidate_ports(config, "second", two)
         leaf.case(inputs, first_of(config, (one, two)))
     leaf.check(latency)
-    assert sum(one[0] and two[0] and fraction_of(one) == fraction_of(two) for one, two in pairs) > 20
+    assert sum(one[0] and two[0] and fraction_of(one) == fraction_of(two) for one, two in pairs) > leaf.some(20)

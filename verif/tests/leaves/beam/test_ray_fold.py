@@ -24,7 +24,7 @@ from raycaster.rtl.common.widths import exact_slope_bits
 def test_ray_fold(config, leaf_of, random):
     inputs = {"before": lambda: room_image_of(config), "slope": lambda: Direction(exact_slope_bits(config) + 1)}
     leaf = leaf_of(ray_fold, config, **inputs, last=Reflector)
-    rays = [ray[2:] for ray in beam_rays(random, config, 4000) if ray[-1]]
+    rays = [ray[2:] for ray in beam_rays(random, config, leaf.some(4000)) if ray[-1]]
     leaf.stimulus = [{} for _ in range(len(rays) + FOLD_LATENCY + 1)]
     for cycle, (camera, slope, mirrors) in enumerate(rays):
         axis, plane = mirrors[-1]

@@ -93,7 +93,7 @@ def test_group_culler(config, leaf_of, random):
     every, fates = (1 << count) - 1, set()
 
     # Faults are planted in the design with one unit; the others show that other sizes work too.
-    some = 1500 if config.units == 1 else 200
+    some = leaf.some(1500 if config.units == 1 else 200)
     for (camera, drawn), _ in zip(scenes(random, config), range(max(6, some // count)), strict=False):
         start = any_start(random, rows, groups)
         first = start[0] * groups + start[1]

@@ -28,7 +28,7 @@ def test_group_tester_at_its_limits(config, leaf_of, random):
     def small() -> int:
         return int(random.choice([0, 1, 2, 1 << int(random.integers(far.bit_length() - 3))]) * random.choice([-1, 1]))
 
-    for _ in range(6000):
+    for _ in range(leaf.some(6000)):
         axis = int(random.integers(3))
         distance = int(random.choice([0, 1, -1, 1 << int(random.integers(9)), *random.integers(-511, 512, size=4)]))
         turning = [0, -1, -units, 1 - units, -units - 1]

@@ -20,7 +20,7 @@ def test_extent_tester(reflections, leaf_of, random):
     widths |= {"mirror_distance": eye_width - 1, "n": eye_width - 1, "e": slope_bits}
     leaf, late, seen = leaf_of(extent_tester, **widths), {}, set()
     far, steepest = LAST * (reflections + 1), (1 << slope_bits) - 1
-    for cycle in range(6000):
+    for cycle in range(leaf.some(6000)):
         low, high = sorted(int(random.choice([0, 1, LAST, random.integers(WORLD_SIZE)])) for _ in range(2))
         eye = int(random.choice([0, LAST, far, far - LAST, LAST - far, random.integers(LAST - far, far + 1)]))
         eye = int(np.clip(eye, LAST - far, far))

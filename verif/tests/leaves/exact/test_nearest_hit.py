@@ -17,7 +17,7 @@ def test_nearest_hit(reflections, turn, leaf_of, random):
     leaf = leaf_of(nearest_hit, config)
     leaf.case({"steps_reset_z_buf": 1})
     best, kept, settled = None, {}, None
-    for _ in range(12000):
+    for _ in range(leaf.some(12000)):
         reset, write, hit = (int(random.random() < chance) for chance in (0.1, 0.8, 0.6))
         factor = int(random.integers(1, 4))
         n, e = (

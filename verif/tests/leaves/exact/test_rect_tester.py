@@ -75,7 +75,8 @@ def test_rect_tester(reflections, turn, leaf_of, random):
     config = exact_config(reflections=reflections, turn=turn)
     leaf = leaf_of(rect_tester, config, rect=Rect)
     distance, seen, corners = 0, set(), set()
-    for table, chosen, eye, slope, mirror in chain(mirrored_rays(random, config, 1500), extreme_rays(config)):
+    rays = mirrored_rays(random, config, leaf.some(1500))
+    for table, chosen, eye, slope, mirror in chain(rays, extreme_rays(config)):
         met = {mirror[0]} if mirror else set()
         if mirror and reflections > 1 and random.random() < 0.5:
             met |= set(random.choice(3, int(random.integers(3))).tolist())

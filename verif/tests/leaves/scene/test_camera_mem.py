@@ -22,7 +22,7 @@ def test_camera_mem(turn, light, leaf_of, random):
     addresses = [registers[name].address for name in ("camera", "forward", "right", "up", "light")]
     neighbours = [address ^ 1 << place for address in addresses for place in range(address_bits(12))]
     model, bases, lights = CameraWords(config), set(), set()
-    for cycle in range(3 * CYCLES):
+    for cycle in range(4 * CYCLES):
         place = {axis: int(random.choice([*EXTREMES, random.integers(WORLD_SIZE)])) for axis in AXES}
         data = registers["camera"].pack(**place) if random.random() < 0.5 else None
         inputs = random_bus(random, addresses * 10 + neighbours, data)

@@ -113,12 +113,13 @@ LONG_LINE = replace(TINY_SCREEN, horizontal=Span(16, 8, 24, 60, active_high=Fals
 def test_ray_caster_renderer_scenes(config, leaf_of, random):
     """One scene per frame, with one rectangle anywhere, and once disabled; both renderers."""
     screen = config.screen_geometry
-    scenes = [scene_in_view(random, config, number % 3) for number in range(50 if config.engine == "beam" else 30)]
+    leaf = leaf_of(RENDERERS.get(config.engine, ray_caster_renderer), config)
+    count = leaf.some(50 if config.engine == "beam" else 30)
+    scenes = [scene_in_view(random, config, number % 3) for number in range(count)]
     camera, table, background, reflections, words = next(scene for scene in scenes if len(np.unique(scene[-1])) > 1)
     disabled = Rectangles(table.corners, table.colours, np.zeros(1, dtype=bool))
     empty = golden_words(config, np.broadcast_to(background, (words.size, 3)))
     scenes.insert(0, (camera, disabled, background, reflections, empty))
-    leaf = leaf_of(RENDERERS.get(config.engine, ray_caster_renderer), config)
     leaf.stimulus += [{"reset": 1, "picture_run": 1}] * 2
     start = start_cycle(screen)
     for number, (camera, table, background, reflections, _) in enumerate(scenes):

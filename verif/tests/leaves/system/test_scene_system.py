@@ -22,7 +22,7 @@ def test_scene_system(tmp_path, random):
     config = small_config(TINY_SCREEN, units=2, rectangles=3, reflections=1, divider_bits=2)
     screen = config.screen_geometry
     slopes = primary_slopes(screen).reshape(-1, 3)
-    frames, ready = 15, 5
+    frames, ready = 9, 5
     start = ready + 2 + HOLD_CYCLES  # the first cycle without reset
     for _ in range(2000):
         camera, table, background, *_ = scene_in_view(random, config, 0)
