@@ -39,7 +39,7 @@ def noticed(bench: Bench, tmp_path) -> Noticed:
     return run
 
 
-@pytest.mark.slow_sets("apb-verilator", "axi4lite-verilator", "wishbone-icarus", "wishbone-verilator")
+@pytest.mark.slow_sets("apb", "axi4lite-verilator", "wishbone-icarus", "wishbone-verilator")
 @pytest.mark.parametrize("simulator", SIMULATORS)
 @pytest.mark.parametrize("bus", BRIDGED)
 def test_bus(bench: Bench, bus, simulator):
@@ -100,8 +100,8 @@ RESTING = {
 
 
 @pytest.mark.slow_sets(
-    "a-commit", "a-fetch", "answered-after-reset", "live-in-mid-frame", "rectangles-too-early", "unmapped-aliases",
-    "waits-in-a-burst",
+    "a-commit", "a-fetch", "answered-after-reset", "live-in-mid-frame", "rectangles-too-early", "start-screen",
+    "unmapped-aliases", "waits-in-a-burst",
 )  # fmt: skip
 @pytest.mark.parametrize("fault", FAULTS | RESTING)
 def test_a_fault_is_noticed_in_traffic(noticed: Noticed, fault):

@@ -31,7 +31,7 @@ HOST = chosen("host-transfers", "6 bits, 1 and 2 cycles")
 
 @pytest.mark.slow_sets(
     "avalon-agent", "beam-tester-products-beam-vga240-s2-u1-r2-m1-c8 folded", "finder-quotients", "fold-exact",
-    "fold-products", "line-start",
+    "fixed-rects", "fold-products", "line-start", "turned-walks",
 )  # fmt: skip
 @pytest.mark.parametrize("proof", [proof for proof in FAULTY if proof.small], ids=str)
 def test_holds(proof, output):

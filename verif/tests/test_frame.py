@@ -81,7 +81,6 @@ def test_full_size_beam(bench: Bench, rows, scale, pixels, shown):
 @pytest.mark.slow_sets(
     quick=[
         "engine=beam-reflections=0",
-        "engine=beam-reflections=4-scale=1",
         "engine=exact-reflections=0",
         "engine=exact-reflections=4-materials",
         "units=2-",

@@ -68,7 +68,7 @@ PYTHON = re.compile(r"`|\b(?:None|True|False|config|self)\b|\b[a-z_]\w*\.[a-z_]"
 
 
 @pytest.mark.slow_sets(
-    "beam-vga180", "exact-tiny48-u2-r1", "exact-tiny48-u2-r2-m1-c8-wishbone", "exact-vga", "seed-vga"
+    "beam-vga180", "exact-tiny48-u2-r1", "exact-tiny48-u2-r2-m1-c8-wishbone", "exact-tiny48-u8", "exact-vga", "seed-vga"
 )
 @configurations
 def test_tools_have_nothing_to_say(config: Configuration, tmp_path):

@@ -36,7 +36,7 @@ def test_exact_unit(config, leaf_of, random):
     rows, columns, _ = slopes.shape
     fates, alive = set(), set()
     ends = config.culling or config.materials
-    for _ in range(500 if config == exact_config(units=5, rectangles=8, reflections=2) else 80):
+    for _ in range(leaf.some(500 if config == exact_config(units=5, rectangles=8, reflections=2) else 80)):
         basis = random_basis(random) if config.turn else None
         if basis is not None:
             slopes = primary_slopes(config.screen_geometry, basis)
