@@ -65,6 +65,7 @@ def pixels(text: str, name: str, shape: tuple[int, int], colour_bits: int) -> np
     return np.stack(channels, axis=-1) << 8 - colour_bits
 
 
+@pytest.mark.slow_sets("axi4lite")
 @pytest.mark.parametrize(
     "options",
     [{"bus": "wishbone", "engine": "exact"}, {"bus": "axi4lite", "engine": "beam", "colour_bits": 5}],

@@ -86,6 +86,7 @@ def test_text_is_shown_as_it_is():
     assert printable("a\nb\x07\udcff", lines=True) == "a\nb\\x07\\udcff"
 
 
+@pytest.mark.slow_sets("trace")
 @pytest.mark.parametrize(
     "words",
     [
