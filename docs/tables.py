@@ -14,6 +14,7 @@ from dataclasses import replace
 from fnmatch import fnmatch
 from functools import cache
 from importlib.metadata import distributions
+from pathlib import Path
 from typing import Any
 
 from filelock import FileLock
@@ -156,9 +157,9 @@ def _current(commands: Sequence[str]) -> Mapping[str, Digests | str]:
     pool = processes(JOBS, spawned=True)
     STORE.parent.mkdir(exist_ok=True)
     with FileLock(STORE.with_suffix(".lock")):
-        stored = json.loads(STORE.read_text()) if STORE.exists() else {}
+        stored = _read(STORE)
         found = stored["found"] if stored.get("state") == state else {}
-        kept = [one for one in (stored, _kept_digests()) if one.get("hardware") == hardware]
+        kept = [one for one in (stored, _read(DIGESTS)) if one.get("hardware") == hardware]
         known = kept[0]["designs"] if kept else {}
         wanted = [command for command in commands if command not in found]
         if wanted:
@@ -179,15 +180,16 @@ def _state(places: Sequence[str], packages: Sequence[str]) -> list[str]:
     return [*(code_digest(ROOT / place, ROOT) for place in places), *(" ".join(each) for each in versions)]
 
 
-def _kept_digests() -> dict[str, Any]:
-    return json.loads(DIGESTS.read_text()) if DIGESTS.exists() else {}
+def _read(path: Path) -> dict[str, Any]:
+    return json.loads(path.read_text()) if path.exists() else {}
 
 
 def keep_digests() -> None:
     """Write `DIGESTS`, for the stored figures' designs as they are now."""
-    now = _current(list(dict.fromkeys(one.command for one in outcomes().values())))
-    wanted = {name for each in now.values() if not isinstance(each, str) for name in each["designs"]}
-    stored = json.loads(STORE.read_text())
+    commands = [one.command for one in outcomes().values()]  # this also updates STORE
+    stored = _read(STORE)
+    now = [stored["found"][command] for command in commands]
+    wanted = {name for each in now if not isinstance(each, str) for name in each["designs"]}
     designs = {name: digest for name, digest in sorted(stored["designs"].items()) if name in wanted}
     DIGESTS.write_text(f"{json.dumps({'hardware': stored['hardware'], 'designs': designs}, indent=1)}\n")
 

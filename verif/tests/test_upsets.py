@@ -46,9 +46,11 @@ def read_results(directory: Path) -> list[dict]:
     return [json.loads(line) for line in (directory / "results.jsonl").read_text().splitlines()]
 
 
-def test_a_sound_design_comes_back(tmp_path: Path):
+@pytest.mark.slow_sets("24")
+@pytest.mark.parametrize("cases", [12, 24])
+def test_a_sound_design_comes_back(tmp_path: Path, cases: int):
     """After jumps of the line counter, which lose syncs, after resets and after misuse, the picture soon recovers."""
-    results = run_cases(convert(SMALL, BUILD), tmp_path, {"video_generator": ("y",)}, range(12))
+    results = run_cases(convert(SMALL, BUILD), tmp_path, {"video_generator": ("y",)}, range(cases))
     assert {result["outcome"] for result in results} <= {"StartScreen", "commit", "unseen"}
     assert Counter(result["kind"] for result in results).keys() == set(KINDS)
     flipped = [result for result in results if result["kind"] == "upset"]

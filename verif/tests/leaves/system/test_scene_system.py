@@ -4,6 +4,7 @@
 import numpy as np
 from engine_vectors import TINY_SCREEN, check_frames, golden_words, scene_in_view, small_config, start_cycle
 from hard_scenes import tracer
+from vectors import Bench
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.rays import primary_slopes
@@ -22,7 +23,7 @@ def test_scene_system(tmp_path, random):
     config = small_config(TINY_SCREEN, units=2, rectangles=3, reflections=1, divider_bits=2)
     screen = config.screen_geometry
     slopes = primary_slopes(screen).reshape(-1, 3)
-    frames, ready = 9, 5
+    frames, ready = 9 if Bench.few else 15, 5
     start = ready + 2 + HOLD_CYCLES  # the first cycle without reset
     for _ in range(2000):
         camera, table, background, *_ = scene_in_view(random, config, 0)
