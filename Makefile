@@ -69,4 +69,5 @@ install = $(if $1,if [ ! -e $(VENV)/$1 ]; then echo "installing $1 (usually a mi
 $(VENV)/base: pyproject.toml constraints.txt
 	@$(PYTHON3) -c 'import sys, ensurepip, venv; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { echo \
 	    "error: $(PYTHON3) is not Python 3.11 or newer with its venv module (Debian: apt-get install python3-venv)" >&2; exit 2; }
-	@echo "making a Python environment in $(VENV)/ (usually a minute)" && $(PYTHON3) -m venv --clear $(VENV) && $(ADD) . && touch $@
+	@echo "making a Python environment in $(VENV)/ (usually a minute)" && $(PYTHON3) -m venv --clear $(VENV) \
+	    && $(ADD) '.$(addsuffix ],$(addprefix [,$(EXTRAS)))' && touch $@ $(addprefix $(VENV)/,$(EXTRAS))

@@ -65,8 +65,9 @@ class Register:
         return {name: (word & field.mask) >> field.lsb for name, field in self.fields.items()}
 
 
+@lru_cache
 def compile_registers(rectangles: int) -> AddrmapNode:
-    """Compile the map of a design with this many entries in its rectangle table."""
+    """Compile the map of a design with this many entries in its rectangle table; callers share the tree."""
     compiler = RDLCompiler()
     compiler.compile_file(str(SOURCE), defines={"RECTANGLES": str(rectangles)} if rectangles else {"NO_TABLE": ""})
     return compiler.elaborate("ray_caster").top
