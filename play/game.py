@@ -18,8 +18,6 @@ from raycaster.configuration import WORLD_SIZE, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.design import Design
 from raycaster.errors import UserError
-from raycaster.golden.exact import ExactModel
-from raycaster.golden.picture import count_wrong, shown
 from raycaster.options import (
     CommandParser,
     add_build_option,
@@ -93,11 +91,7 @@ def film_scene(design: Design, frames: int, build: Path, output: Path, console: 
             else:
                 walker.turn(yaws[number + 1] - yaws[number])
             frame = machine.frame(writes=walker.writes())
-            live = frame.scene
-            if live is None:
-                raise SimulationError("the design shows no scene")
-            perfect = live.picture(ExactModel(), config.screen_geometry)
-            wrong += count_wrong(frame.picture, shown(perfect, config))
+            wrong += frame.wrong(config)
             Image.fromarray(frame.picture).save(output / f"frame_{number:04}.png")
     return wrong
 
@@ -153,11 +147,7 @@ CHECKS = (
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command and return its exit code.
-
-    Args:
-        argv: its arguments (default: those of the process).
-    """
+    """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
     if arguments.frames < 1:
         raise UserError(f"frames: expected at least 1, got {arguments.frames}")

@@ -14,6 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from raycaster.configuration import CHANNEL_BITS, Configuration, need_avalon
+from raycaster.golden.exact import ExactModel
+from raycaster.golden.picture import count_wrong, shown
 from raycaster.memory_map import BUTTON_NAMES, PROGRAM_FILE, clocks_per_bit
 from raycaster.registers import address_bits
 from raycaster.sim.register_model import LiveScene, SceneFollower
@@ -44,6 +46,17 @@ class Frame:
 
     text: str
     """Text from the serial port."""
+
+    def wrong(self, config: Configuration) -> int:
+        """Return the number of pixels that differ from exact arithmetic.
+
+        Raises:
+            SimulationError: the design shows no scene.
+        """
+        if self.scene is None:
+            raise SimulationError("the design shows no scene")
+        perfect = self.scene.picture(ExactModel(), config.screen_geometry)
+        return count_wrong(self.picture, shown(perfect, config))
 
 
 class Machine:

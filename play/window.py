@@ -15,8 +15,6 @@ import numpy as np
 
 from raycaster.configuration import Configuration, configure
 from raycaster.errors import UserError, not_installed
-from raycaster.golden.exact import ExactModel
-from raycaster.golden.picture import count_wrong, shown
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.options import (
     CommandParser,
@@ -30,7 +28,6 @@ from raycaster.output import Console
 from raycaster.play.machine import Frame, Machine, build_machine
 from raycaster.play.system import FASTEST
 from raycaster.play.walk import TURNS, WALKS, Walker, design_to_walk
-from raycaster.sim.register_model import LiveScene
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
 from raycaster.waits import building
@@ -70,7 +67,7 @@ class Judge:
             return
         self.finish()
         if frame.scene is not None and frame.scene.run:
-            self._asked = self._pool.submit(self._count, frame.picture, frame.scene)
+            self._asked = self._pool.submit(frame.wrong, self._config)
 
     def finish(self) -> None:
         """Wait for the running check."""
@@ -78,10 +75,6 @@ class Judge:
             self.wrong, self._asked = self._asked.result(), None
             self.pictures += 1
             self.all_wrong += self.wrong
-
-    def _count(self, picture: np.ndarray, scene: LiveScene) -> int:
-        perfect = scene.picture(ExactModel(), self._config.screen_geometry)
-        return count_wrong(picture, shown(perfect, self._config))
 
 
 class Window:
@@ -108,12 +101,13 @@ class Window:
         self._font = pygame.font.Font(None, BAR - 6)
         self._keys = {pygame.key.key_code(key): buttons.index(button) for button, held in keys.items() for key in held}
         self._held: set[int] = set()
-        self._drag = 0, 0
+        self.drag = 0, 0
+        """Pixels to the right and down that the mouse was dragged before the last call of `held`."""
 
     def held(self) -> int | None:
         """Return the held buttons, one bit each; None if the window is to close."""
         pygame = self._pygame
-        self._drag = 0, 0
+        self.drag = 0, 0
         for event in pygame.event.get():
             if event.type == pygame.QUIT or (event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE):
                 return None
@@ -122,13 +116,8 @@ class Window:
             elif event.type == pygame.KEYUP:
                 self._held.discard(event.key)
             elif event.type == pygame.MOUSEMOTION and event.buttons[0]:
-                self._drag = self._drag[0] + event.rel[0], self._drag[1] + event.rel[1]
+                self.drag = self.drag[0] + event.rel[0], self.drag[1] + event.rel[1]
         return sum({1 << self._keys[key] for key in self._held})
-
-    @property
-    def drag(self) -> tuple[int, int]:
-        """Pixels to the right and down that the mouse was dragged before the last call of `held`."""
-        return self._drag
 
     def show(self, picture: np.ndarray, text: str) -> None:
         """Draw a frame."""
@@ -217,11 +206,7 @@ def command_parser() -> CommandParser:
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """Run the command.
-
-    Args:
-        argv: its arguments (default: those of the process).
-    """
+    """Run the command."""
     arguments = command_parser().parse_args(argv)
     console = Console()
     options = given_options(arguments)

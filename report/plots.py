@@ -192,10 +192,8 @@ def by_arithmetic(titles: Mapping[str, str], panels: Sequence[tuple[str, Mapping
     figure, [columns] = new_figure(3.3, 1, len(panels), sharey=True)
     for axes, (title, series) in zip(columns, panels, strict=True):
         for (colour, mark), (label, values) in zip(MARKS.items(), series.items(), strict=False):
-            places, shown = (
-                [[*titles].index(name) for name in values],
-                [max(one, LEAST_RAYS) for one in values.values()],
-            )
+            places = [[*titles].index(name) for name in values]
+            shown = [max(one, LEAST_RAYS) for one in values.values()]
             axes.plot(shown, places, mark, color=colour, label=label, ms=4.5, alpha=0.8)
         axes.set_xlabel(title)
         if max(shown) <= 1:

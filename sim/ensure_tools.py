@@ -7,7 +7,6 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from raycaster.errors import UserError
@@ -29,23 +28,20 @@ class Tool:
     Attributes:
         name: the name to print.
         programs: names or paths of the tool's executable; any of them will do.
-        packages: arguments to the install command, by package manager.
+        package: name of its package.
+        of_brew: arguments to Homebrew's install command.
         site: the tool's web site.
     """
 
     name: str
     programs: tuple[str, ...]
-    packages: Mapping[str, tuple[str, ...]]
+    package: str
+    of_brew: tuple[str, ...]
     site: str
 
 
 TOOLS = {
-    "icarus": Tool(
-        "Icarus Verilog",
-        ("iverilog",),
-        dict.fromkeys(INSTALL, ("iverilog",)) | {"brew": ("icarus-verilog",)},
-        "steveicarus.github.io/iverilog",
-    ),
+    "icarus": Tool("Icarus Verilog", ("iverilog",), "iverilog", ("icarus-verilog",), "steveicarus.github.io/iverilog"),
     "chromium": Tool(
         "Chromium",
         (
@@ -55,11 +51,11 @@ TOOLS = {
             "/Applications/Chromium.app/Contents/MacOS/Chromium",
             "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
         ),
-        # Homebrew's chromium is not signed, so macOS does not run it.
-        dict.fromkeys(INSTALL, ("chromium",)) | {"brew": ("--cask", "google-chrome")},
+        "chromium",
+        ("--cask", "google-chrome"),  # Homebrew's chromium is not signed, so macOS does not run it
         "chromium.org",
     ),
-    "tcl": Tool("Tcl", ("tclsh",), dict.fromkeys(INSTALL, ("tcl",)) | {"brew": ("tcl-tk",)}, "tcl-lang.org"),
+    "tcl": Tool("Tcl", ("tclsh",), "tcl", ("tcl-tk",), "tcl-lang.org"),
 }
 
 
@@ -73,9 +69,10 @@ def install_command(tool: str) -> tuple[str, ...] | None:
     manager = next((name for name in INSTALL if shutil.which(name)), None)
     if manager is None:
         return None
-    command = (*INSTALL[manager], *TOOLS[tool].packages[manager])
-    # Homebrew refuses to run as root; the others need it.
-    return command if manager == "brew" or os.geteuid() == 0 else ("sudo", *command)
+    if manager == "brew":
+        return (*INSTALL[manager], *TOOLS[tool].of_brew)  # Homebrew refuses to run as root; the others need it
+    command = (*INSTALL[manager], TOOLS[tool].package)
+    return command if os.geteuid() == 0 else ("sudo", *command)
 
 
 def missing(tool: str, why: str = "") -> UserError:

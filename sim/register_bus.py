@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
 
 from raycaster.configuration import Configuration
-from raycaster.program import basis_fields, rectangle_fields, scene_fields
+from raycaster.program import scene_fields
 from raycaster.registers import Register, address_bits, register_map
-from raycaster.scene import Basis, Rectangle, Scene
+from raycaster.scene import Scene
 
 
 class RegisterBus(ABC):
@@ -38,22 +37,9 @@ class RegisterBus(ABC):
         register = self.registers[name]
         return register.unpack(await self.read_word(register.address))
 
-    async def write_camera(self, position: Sequence[int], basis: Basis | None = None) -> None:
-        """Write the camera's x, y, z to the shadow, and forward, right and up if they are given."""
-        await self.write("camera", **dict(zip("xyz", position, strict=True)))
-        if basis:
-            await self._write_all(basis_fields(basis))
-
-    async def write_rectangle(self, index: int, rectangle: Rectangle) -> None:
-        """Write an enabled rectangle to the shadow."""
-        await self._write_all(rectangle_fields(index, rectangle, self._configuration))
-
     async def load_scene(self, scene: Scene) -> None:
         """Write background, camera and rectangles to the shadow, and disable the unused entries."""
-        await self._write_all(scene_fields(scene, self._configuration))
-
-    async def _write_all(self, writes: Iterable[tuple[str, dict[str, int]]]) -> None:
-        for name, fields in writes:
+        for name, fields in scene_fields(scene, self._configuration):
             await self.write(name, **fields)
 
     async def commit(self, *, run: int = 1, reflections: int) -> None:

@@ -164,27 +164,17 @@ class Agent:
         self.addresses = {register.address: name for name, register in registers.items()}
         self.control = Word(registers["control"].implemented & ~registers["control"].fields["commit"].mask)
         self.background = Word(registers["background"].implemented)
+        named = (
+            "fraction_bits", "divider_bits", "reflections", "scale", "colour_bits", "culling", "turn", "materials",
+            "patterns", "light",
+        )  # fmt: skip
+        engine = {"engine": config.facts.code, "nearest": int(config.rounding == "nearest")}
         constants = {
             "id": {"magic": int.from_bytes(b"RAYC", "big")},
             "version": {field: value.reset for field, value in registers["version"].fields.items()},
-            "engine": {
-                "engine": config.facts.code,
-                "fraction_bits": config.fraction_bits,
-                "nearest": int(config.rounding == "nearest"),
-                "divider_bits": config.divider_bits,
-                "reflections": config.reflections,
-                "scale": config.scale,
-                "colour_bits": config.colour_bits,
-                "culling": int(config.culling),
-                "turn": int(config.turn),
-                "materials": int(config.materials),
-                "patterns": int(config.patterns),
-                "light": int(config.light),
-            },
-            "size": {
-                "units": config.units, "rectangles": config.rectangles, "rows": config.rows,
-            },
-        }  # fmt: skip
+            "engine": engine | {name: int(getattr(config, name)) for name in named},
+            "size": {"units": config.units, "rectangles": config.rectangles, "rows": config.rows},
+        }
         self._constants = {name: registers[name].pack(**fields) for name, fields in constants.items()}
         self.reset()
 
@@ -260,20 +250,14 @@ class Agent:
         if name == "cycles" and bus["bus_mask"]:
             self.row = self.group = 0
         elif inputs["progress_busy"]:
-            self.row, self.group = (
-                max(self.row, inputs["progress_row_cycles"]),
-                max(self.group, inputs["progress_group_cycles"]),
-            )
+            self.row = max(self.row, inputs["progress_row_cycles"])
+            self.group = max(self.group, inputs["progress_group_cycles"])
         committing = name == "control" and bool(ones & 2)
         # A commit takes effect in the cycle in which the shadow is copied, too late for a StartScreen in that cycle.
         self.commit = committing or bool(bus["bus_commit"]) or (self.commit and not start_screen)
         accepted = not self.waiting
         self.waiting = False
-        self.bus = {
-            **bus,
-            "bus_commit": int(committing),
-            "bus_write": int(accepted and inputs["avs_s0_write"]),
-        }
+        self.bus = bus | {"bus_commit": int(committing), "bus_write": int(accepted and inputs["avs_s0_write"])}
         self.reading = bool(accepted and inputs["avs_s0_read"])
         if accepted and (inputs["avs_s0_read"] or inputs["avs_s0_write"]):
             self.bus["bus_address"] = inputs["avs_s0_address"]

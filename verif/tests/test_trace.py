@@ -235,7 +235,7 @@ def test_the_command(tmp_path):
     assert "The hardware agrees with the golden model." in sound.stdout
     assert "expected colour #" in sound.stdout
     # Files converted before are used as they are.
-    (buffer,) = tmp_path.glob("build/model/*/verilog/z_buffer.v")
+    (buffer,) = tmp_path.glob("build/model/*/verilog-*/z_buffer.v")
     buffer.write_text(buffer.read_text().replace("depth < nearest", "depth > nearest"))
     broken = called(str(SCENE), *options, cwd=tmp_path, program=main)
     assert broken.returncode == 1, broken.stdout + broken.stderr
