@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 import shutil
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from sphinx.cmd.build import build_main
@@ -70,9 +70,6 @@ LIVE = """```{image} \\2
 *Click the picture: the hardware runs in your browser.*"""
 """Link from the first page's picture to the page that runs the hardware, which takes seconds to load."""
 
-GROUP_OF_API = "Reference"
-"""Group of pages that the Python API joins."""
-
 
 def write_site(output: Path, web: Path | None = None) -> Path:
     """Write all pages, and return the path of the first one.
@@ -112,24 +109,18 @@ def command_parser() -> CommandParser:
 
 
 def _add_what_forges_would_not_show(pages: Path) -> None:
-    """Add the page groups, the Python API, and the link to the interactive register map."""
-    (pages / "python_api.rst").write_text("\n".join(_reference()))
+    """Add the page groups, the Python API from the docstrings, and the link to the interactive register map."""
+    modules = [f"{module}\n{'-' * len(module)}\n\n.. automodule:: {module}\n" for module in REFERENCE]
+    (pages / "python_api.rst").write_text("\n".join(["Python API\n==========\n", *modules]))
     index, registers = pages / "index.md", pages / "registers.md"
     toctrees = []
     for group, listed in re.findall(r"^## (.*)\n\n((?:- .*\n)+)", index.read_text(), re.MULTILINE):
         names = re.findall(r"\]\((\w+)\.md\)", listed)
-        names += ["python_api"] if group == GROUP_OF_API else []
+        names += ["python_api"] if group == "Reference" else []
         toctrees += ["```{toctree}", ":hidden:", f":caption: {group}", "", *names, "```", ""]
     index.write_text("\n".join([index.read_text(), *toctrees]))
     link = '<a href="register_map/index.html">Interactive register map, which decodes words</a>'
     registers.write_text(f"{registers.read_text()}\n{link}\n")
-
-
-def _reference() -> Iterator[str]:
-    """Yield the lines of the page that documents the modules in `REFERENCE` from their docstrings."""
-    yield from ("Python API", "==========", "")
-    for module in REFERENCE:
-        yield from (module, "-" * len(module), "", f".. automodule:: {module}", "")
 
 
 def main(argv: Sequence[str] | None = None) -> None:

@@ -6,6 +6,9 @@ from __future__ import annotations
 import re
 import tempfile
 from pathlib import Path
+from typing import Any
+
+import wavedrom
 
 from raycaster.docs import blocks, timing
 from raycaster.outcomes import RESULTS, kept_outcome
@@ -21,7 +24,8 @@ def drawn() -> dict[str, str]:
     with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
         for diagram in timing.DIAGRAMS:
             path = Path(scratch) / f"{diagram.name}.svg"
-            timing.render(timing.kept(diagram.name), path)
+            drawing: Any = wavedrom.render(timing.kept(diagram.name))
+            drawing.saveas(str(path))
             found[diagram.name] = path.read_text()
         path = Path(scratch) / "error_and_time.svg"
         designs = of_kept(kept_outcome(RESULTS / "report.json").figures["designs"])

@@ -34,23 +34,14 @@ def options() -> str:
 
 def seed_cycles() -> str:
     """Table of the seed engine's cycles and budget per group, by reflections and quotient bits per cycle."""
+    head = ["reflections", "quotient bits per cycle", "cycles per rectangle", "cycles per group, worst case"]
     rows = []
     for reflections in range(3):
         for bits in (1, 2, 3):
             config = configure(reflections=reflections, divider_bits=bits, allow_underrun=True)
             fits = "yes" if config.group_cycles <= config.group_budget else "no"
             rows.append([reflections, bits, config.rect_cycles, config.group_cycles, config.group_budget, fits])
-    return table(
-        [
-            "reflections",
-            "quotient bits per cycle",
-            "cycles per rectangle",
-            "cycles per group, worst case",
-            "budget per group",
-            "fits",
-        ],
-        rows,
-    )
+    return table([*head, "budget per group", "fits"], rows)
 
 
 def seed_steps() -> str:

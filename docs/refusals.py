@@ -6,7 +6,7 @@ Each has another form, which converts, and which gives the same outputs in MyHDL
 
 from __future__ import annotations
 
-import importlib.util
+import runpy
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -70,11 +70,7 @@ def design_of(body: str, directory: Path) -> tuple[Callable[..., Any], str]:
     text = MODULE.format(body=indent(body, "    "))
     path = directory / "example.py"
     path.write_text(text)
-    spec = importlib.util.spec_from_file_location("example", path)
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.example, text
+    return runpy.run_path(str(path))["example"], text
 
 
 def design_arguments() -> dict[str, Any]:

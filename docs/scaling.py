@@ -17,7 +17,7 @@ from rich.progress import track
 from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, Configuration, ConfigurationError, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.engines import ENGINES
-from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, measure
+from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, Area, measure
 from raycaster.golden.engines import model_of
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.jobs import run_jobs, threads
@@ -114,7 +114,10 @@ def measure_scaling(output: Path, build: Path, console: Console) -> list[dict[st
             "frame_cycles": config.group_cycles * config.groups * config.screen_geometry.rows,
             "clock_mhz": config.screen_geometry.clock_hz / 1e6,
         }  # fmt: skip
-    count = partial(_count, output=output)
+
+    def count(config: Configuration) -> Area:
+        return measure(config, FAMILY, output / config.name)
+
     areas = run_jobs("counting", count, list(wanted.values()), threads(JOBS), console)
     cells = {name: vars(area) for name, area in zip(wanted, areas, strict=True)}
     times = {
@@ -123,13 +126,9 @@ def measure_scaling(output: Path, build: Path, console: Console) -> list[dict[st
     }
     for row in rows:
         if name := row.get("name"):
-            row.update({count: cells[name][count] for count in ("tables", "registers", "multipliers")})
+            row.update({kind: cells[name][kind] for kind in ("tables", "registers", "multipliers")})
             row["frame_ms"] = times[name]
     return rows
-
-
-def _count(config: Configuration, output: Path) -> Any:
-    return measure(config, FAMILY, output / config.name)
 
 
 PANELS = (

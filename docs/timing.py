@@ -18,8 +18,6 @@ from pathlib import Path
 from string import ascii_uppercase
 from typing import Any
 
-import wavedrom
-
 from raycaster.configuration import Configuration, configure
 from raycaster.debug.probes.engines import description_of
 from raycaster.debug.waves import Waves, signed
@@ -309,12 +307,6 @@ def _place_arrows(
         edges.append(f"{start}~>{end} {cycles[ends[1][1]] - cycles[ends[0][1]]}")
     nodes = {name: "".join(letters.get((name, i), ".") for i in range(len(columns))).rstrip(".") for name, _ in letters}
     return nodes, edges
-
-
-def render(source: str, path: Path) -> None:
-    """Draw WaveJSON as an SVG."""
-    drawing: Any = wavedrom.render(source)
-    drawing.saveas(str(path))
 
 
 def kept(name: str) -> str:

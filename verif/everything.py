@@ -71,7 +71,7 @@ class State:
             if entry["sources"] != before["sources"] or entry["fresh"]:
                 self.tests, self.walls = {}, []
             same = {name for name, digest in entry["files"].items() if digest == before["files"].get(name)}
-            self.tests = {test: outcome for test, outcome in self.tests.items() if _file(test) in same}
+            self.tests = {test: found for test, found in self.tests.items() if Path(test.split("::")[0]).name in same}
             self.walls.append(0.0)
             return
         self.tests[entry["test"]] = entry
@@ -96,16 +96,17 @@ class State:
         }
 
 
-def _file(test: str) -> str:
-    return Path(test.partition("::")[0]).name
-
-
 class Recorder:
     """Pytest hooks that keep each outcome, in the process that distributes the tests."""
 
     def __init__(self, state: State):
         self._state, self._start = state, time.monotonic()
+        self._before = {"passed": state.of("passed"), "seconds": dict(state.seconds)}
         self._phases: dict[str, list[Any]] = {}
+
+    def pytest_configure_node(self, node: Any) -> None:
+        """Pass the same earlier outcomes to all workers: one that replaces a crashed one must find the same tests."""
+        node.workerinput["before"] = self._before
 
     def pytest_xdist_node_collection_finished(self, ids: Sequence[str]) -> None:
         """Keep the names of the tests to run."""
@@ -142,16 +143,11 @@ def pytest_configure(config: Any) -> None:
 
 def pytest_collection_modifyitems(config: Any, items: list[Any]) -> None:
     """Pytest's hook, in each worker: leave out tests that have passed, and begin with unknown and long ones."""
-    # A separate file that does not change: a worker that replaces a crashed one must find the same tests.
-    before = json.loads(_before(config.getoption("outcomes")).read_text())
+    before = config.workerinput["before"]
     if gone := [item for item in items if item.nodeid in before["passed"]]:
         config.hook.pytest_deselected(items=gone)
     left = [item for item in items if item.nodeid not in before["passed"]]
     items[:] = sorted(left, key=lambda item: -before["seconds"].get(item.nodeid, float("inf")))
-
-
-def _before(outcomes: Path) -> Path:
-    return outcomes.with_suffix(".before.json")
 
 
 def tested_sources(root: Path) -> tuple[str, dict[str, str]]:
@@ -211,10 +207,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     state = State(path)
     sources, files = tested_sources(root)
     state.add({"sources": sources, "files": files, "fresh": arguments.fresh})
-    passed = state.of("passed")
     if state.tests:
-        console.print(f"resumed: {len(passed)} of {len(state.tests)} tests have passed with the same sources")
-    _before(path).write_text(json.dumps({"passed": passed, "seconds": state.seconds}))
+        passed = len(state.of("passed"))
+        console.print(f"resumed: {passed} of {len(state.tests)} tests have passed with the same sources")
     # Each worker gets one test at a time, so that the longest begin first.
     words = ["-q", "-n", str(arguments.jobs), "--dist", "load", "--maxschedchunk", "1", "--durations", "10"]
     plugin = ["-p", "raycaster.verif.everything", "--outcomes", str(path)]

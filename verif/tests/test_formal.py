@@ -1,32 +1,29 @@
 # SPDX-License-Identifier: MIT
-"""The proofs hold for the design, and each fails when a fault is planted in the Verilog."""
+"""The proofs hold, and each fails when a fault is planted: in the Verilog for a property, in its text for a lemma."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
+import z3
 from conftest import refused
 
 from raycaster.errors import UserError
 from raycaster.verif.formal.faults import model_with_faults, outcome
+from raycaster.verif.formal.lemmas import LEMMAS, Lemma, prove_lemma
 from raycaster.verif.formal.properties import PROPERTIES
 from raycaster.verif.formal.prove import main
-from raycaster.verif.formal.prover import Property, Result, prove
+from raycaster.verif.formal.prover import Result, prove
 from raycaster.verif.formal.wrapper import completed, constants
 
 FAULTY = [proof for proof in PROPERTIES if proof.faults]
 """Properties with planted faults, each of a design that is proved quickly."""
 
-
-def chosen(name: str, label: str) -> Property:
-    """Return the property with this name for the design with this label."""
-    [found] = [proof for proof in PROPERTIES if (proof.name, proof.label) == (name, label)]
-    return found
-
-
-HOST = chosen("host-transfers", "6 bits, 1 and 2 cycles")
+[HOST] = [proof for proof in PROPERTIES if (proof.name, proof.label) == ("host-transfers", "6 bits, 1 and 2 cycles")]
 
 
 @pytest.mark.slow_sets(
@@ -34,7 +31,7 @@ HOST = chosen("host-transfers", "6 bits, 1 and 2 cycles")
     "fixed-rects", "fold-products", "line-start", "turned-walks",
 )  # fmt: skip
 @pytest.mark.parametrize("proof", [proof for proof in FAULTY if proof.small], ids=str)
-def test_holds(proof, output):
+def test_a_property_holds(proof, output):
     """Quick properties that have planted faults are proved without them; `make prove` proves all of them."""
     result = prove(proof, output / "proof", timeout=250)
     assert result.proved, f"{result.outcome}: {result.detail}; trace {result.trace}"
@@ -49,24 +46,19 @@ def test_holds(proof, output):
     ]
 )  # fmt: skip
 @pytest.mark.parametrize("proof", FAULTY, ids=str)
-def test_faults_are_found(proof, output):
+def test_faults_in_the_hardware_are_found(proof, output):
     """A run from reset contradicts the property; a failing induction step would not show that it can happen."""
     model_with_faults(proof, output / "planted")
     found = {fault: outcome(proof, output / "planted", fault, timeout=300) for fault in proof.faults}
     assert found == dict.fromkeys(proof.faults, "failed")
 
 
-def test_no_fault_is_chosen(output):
-    """Planting changes nothing unless a fault is chosen."""
-    model_with_faults(HOST, output / "planted")
-    assert outcome(HOST, output / "planted", "", timeout=60) == "passed"
-
-
-def test_a_fault_that_no_run_from_reset_shows_is_not_found(output):
-    """A host that waits has an access in every run, so that this changes nothing that reset leads to."""
-    never = replace(HOST, faults=("avalon_host.waiting and access_select",))
-    model_with_faults(never, output / "planted")
-    assert outcome(never, output / "planted", never.faults[0], timeout=60) == "passed"
+def test_a_fault_that_no_run_shows_is_not_found(output):
+    """No fault changes nothing, nor does one whose condition always holds: a host that waits has an access."""
+    harmless = replace(HOST, faults=(*HOST.faults, "avalon_host.waiting and access_select"))
+    model_with_faults(harmless, output / "planted")
+    for fault in ("", harmless.faults[-1]):
+        assert outcome(harmless, output / "planted", fault, timeout=60) == "passed"
 
 
 def test_a_place_that_does_not_exist_is_refused(output):
@@ -111,9 +103,10 @@ wire [1:0] pair_high = pair_word[3:2];
     )
 
 
-def test_every_property_has_a_fault():
+def test_every_proof_has_a_fault():
     """A property that no fault contradicts may claim nothing."""
     assert {proof.name for proof in FAULTY} == {proof.name for proof in PROPERTIES}
+    assert sorted(LEMMA_FAULTS) == sorted(lemma.label for lemma in LEMMAS)
 
 
 def test_unknown_property():
@@ -142,3 +135,117 @@ def test_kept_proofs_are_not_repeated(output, monkeypatch, names_for_digests):
     changed = replace(HOST, parameters={**HOST.parameters, "MOST_WAIT": 2})
     monkeypatch.setattr("raycaster.verif.formal.prove.PROOFS", [changed])
     assert outcome()[0] == 1
+
+
+LEMMA_FAULTS = {
+    "bounds": [("D*n <= (hi", "D*n < (hi"), ("e > 0", "e != 0"), ("(lo - E)*e", "(lo + E)*e")],
+    "plane-ahead": [("n*e > 0", "n*e >= 0"), ("(n > 0)", "(n < 0)"), ("e != 0", "0 == 0")],
+    "turned-plane": [("(-E - 1)", "-E"), ("t*(-D)", "t*D")],
+    "turned-bounds": [("-lo - 1", "-lo"), ("-hi - 1", "-lo - 1"), ("(-E - 1) + d*t <", "(-E - 1) - d*t <")],
+    "passed-bound": [("near >= 0", "near <= 0"), ("far >= 0", "far >= 1"), ("d >= 0", "0 == 0"), ("e > 0", "e >= 0")],
+    "nearer": [("n1*e2 < n2*e1", "n1*e2 <= n2*e1"), ("n1*e2 < n2*e1", "n1*e1 < n2*e2"), ("e2 > 0", "e2 != 0")],
+    "kept-is-nearest": [("n1*e3 < n3*e1", "n1*e3 < n2*e1"), ("n2*e3 <= n3*e2", "n2*e3 <= n3*e2 + 1"),
+                        ("e3 > 0", "e3 != 0")],
+    "depth": [("(t1 < t2)", "(t1 <= t2)"), ("t1 >= 0", "0 == 0"), ("D != 0", "0 == 0")],
+    "slope-ratios": [("E + D*c*s1", "E + D*s1"), ("(s1 < s2)", "(s1 <= s2)"), ("c > 0", "c != 0")],
+    "mirrored-eye": [("(2*k - E)", "(2*k + E)"), ("-D*(m + s)", "-D*s"), ("-D*(m + s)", "D*(m + s)")],
+    "mirrored-distance": [("-(k - E)", "k - E"), ("2*k - E", "2*k - E - 1")],
+    "beyond-on-the-same-axis": [("(n > m)", "(n >= m)"), ("e > 0", "e != 0"), ("(n == m)", "(n >= m)")],
+    "beyond-on-another-axis": [("d*n > m*e", "d*n >= m*e"), ("d*n == m*e", "d*m == n*e"), ("d > 0", "d != 0")],
+    "order-kept": [("a*e < b*e", "a*e <= b*e"), ("e > 0", "e >= 0"), ("(a < b)", "(a < b + 1)")],
+    "corner-rule": [("m*e <= d*n", "m*e < d*n"), ("not met)", "met)"), ("t > s", "t >= s")],
+    "eye-in-range": [("<= w*(r + 2)", "<= w*(r + 1)"), ("2*k - E", "2*k + E"), ("0 <= k <= w", "0 <= k <= w + 1"),
+                     ("k - E <= w*(r + 1)", "k - E <= w*(r + 1) - 1")],
+    "product-fits": [("x*y < A*B", "x*y < A*B - A"), ("0 <= x < A", "x < A"), ("0 <= y < B", "0 <= y <= B")],
+    "product-in-range": [("x*y <= A*B", "x*y < A*B"), ("-B <= y <= B", "-B <= y <= B + 1"), ("-A*B <= x", "0 <= x")],
+    "slope-in-range": [("h*u <= M*(V + C + H)", "h*u < M*(V + C + H)"), ("V >= 0", "0 == 0"), ("+ c*r", "- c*c*r"),
+                       ("-H <= h <= H", "-H - 1 <= h <= H")],
+    "next-column": [("n*(D + R)", "n*(D - R)"), ("now + n*R", "now + R"), ("n*(D + R)", "n*(D + R + 1)")],
+    "fold-at-a-mirror": [("(2*n - T)", "(2*n + T)"), ("-s*(X - E) +", "s*(X - E) +"), ("(2*n - T)", "(n - T)")],
+    "fold-at-two-on-an-axis": [("2*(n - m)", "2*(m - n)"), ("x + 2", "-x + 2"), ("2*(n - m)", "(n - m)")],
+    "folded-way": [("Tp*Da - s*z", "Tp*Da + s*z"), ("s*z*n*Dp", "n*Dp"), ("s*s == 1", "0 == 0"), ("+ Ta == n", "== n")],
+    "folded-bounds": [("D*n + T*e <= (hi", "D*n <= (hi"), ("e > 0 and", "e > 1 and"), ("(lo <= C", "(lo < C")],
+    "ahead-of-mirror": [("n > 0", "n > 1"), ("m > 0", "m >= 0"), ("d > 0", "0 == 0")],
+    "complement-adds-one": [("a + b + 1", "a + b"), ("== -b", "== b"), ("(-b - 1) + 1", "(-b - 1)")],
+    "division": [("(k <= q)", "(k < q)"), ("r > 0", "r >= 0"), ("0 <= r < e", "0 <= r <= e"), ("q < k", "q <= k")],
+    "division-step": [("2*r + b >= e", "2*r + b > e"), ("s < e", "s < e - 1"), ("- d*e", "+ d*e"),
+                      ("0 <= b <= 1", "0 <= b <= 2")],
+    "cell-number": [("(i + 1)", "i + 1"), ("0 <= j < c", "0 <= j <= c"), ("0 <= r < e", "0 <= r <= e")],
+    "digits-appended": [("b*p + m*d", "p + m*d"), ("+ m*d", "+ m"), ("b*p + m*d", "b*p - m*d")],
+    "quotient-truncated": [("x - q < 1", "x - q <= 0"), ("0 <= r < e", "0 <= r <= e"), ("w == e*q", "w == -e*q")],
+    "quotient-nearest": [("2*(x - q) < 1", "2*(x - q) < 0"), ("-1 <=", "0 <="), ("0 <= r < 2*e", "0 <= r < 3*e")],
+    "way-of-magnitudes": [("d*(A*n)", "A*n"), ("s*s == 1", "0 == 0"), ("t*(s*e) == s*n", "t*e == s*n")],
+    "point-error": [("<= c*e + A*b + q*e", "<= c*e + A*b"), ("P == O + X", "P == O - X"),
+                    ("<= D*(I - i) <=", "<= D*(I + i) <="), ("<= c*e + A*b + q*e", "<= c*e + b + q*e")],
+    "between": [("x < y", "x + 1 < y"), ("i <= N", "i <= N + 1"), ("a + N*g < b", "a + N*g <= b")],
+    "shares": [("(w - v)*s", "w*s"), ("(4 - m)*s", "(3 - m)*s"), ("4*v == w*m", "4*v == m")],
+    "product-in-parts": [("c*(n*h)", "n*h"), ("l + c*h", "l - c*h"), ("n*l +", "l +")],
+    "cell-parity": [("a != b", "a == b"), ("(c == 1)", "(c == 0)"), ("0 <= b <= 1", "0 <= b <= 2")],
+    "from-the-light": [("S*s", "S"), ("(E - L)*e", "(E + L)*e"), ("+ D*n", "- D*n"), ("s*e == 1", "s*e == 2")],
+    "before-the-point": [("n*e < d", "n*e <= d"), ("n*e < d", "n < d*e"), ("e > 0", "e != 0")],
+    "lit-side": [("L < k)", "L <= k)"), ("(L - k) > 0", "(L - k) >= 0"), ("D < 0 and k < L", "D < 0 and L < k"),
+                 ("t > 0", "t != 0")],
+    "shadow-slope-in-range": [("S <= w*e", "S < w*e"), ("-w*e <=", "0 <="), ("0 <= L <= w", "-1 <= L <= w")],
+}  # fmt: skip
+"""By lemma, right and wrong texts of a hypothesis or the conclusion; 0 == 0 stands for no hypothesis."""
+
+every_lemma = pytest.mark.parametrize("lemma", LEMMAS, ids=lambda lemma: lemma.label)
+
+
+def changed(lemma: Lemma, right: str, wrong: str) -> Lemma:
+    """Return the lemma with this fault in the one hypothesis or conclusion that has the right text."""
+    texts = [*lemma.given, lemma.then]
+    [place] = [index for index, text in enumerate(texts) if right in text]
+    texts[place] = texts[place].replace(right, wrong)
+    return replace(lemma, given=tuple(texts[:-1]), then=texts[-1])
+
+
+def contradicted(lemma: Lemma, values: Mapping[str, Fraction | bool]) -> bool:
+    """Return True if the values of all variables, in Python, satisfy the hypotheses but not the conclusion."""
+    *given, then = (bool(eval(text, {}, dict(values))) for text in (*lemma.given, lemma.then))
+    return all(given) and not then
+
+
+def counterexample(lemma: Lemma, sorts: Mapping[str, str]) -> dict[str, Fraction | bool] | None:
+    """Return values of these variables that contradict a lemma, from z3's Python interface, or None."""
+    solver = z3.Solver()
+    solver.set("timeout", 60_000)
+    solver.from_string(lemma.smt().partition("(check-sat)")[0])
+    verdict = solver.check()
+    assert verdict != z3.unknown, lemma.label
+    if verdict == z3.unsat:
+        return None
+    make = {"Bool": z3.Bool, "Int": z3.Int, "Real": z3.Real}
+    values = {name: solver.model().eval(make[sort](name), model_completion=True) for name, sort in sorts.items()}
+    return {name: z3.is_true(value) if z3.is_bool(value) else Fraction(str(value)) for name, value in values.items()}
+
+
+@every_lemma
+def test_a_lemma_holds(lemma, output):
+    """Both solvers prove each lemma."""
+    assert prove_lemma(lemma, output / "lemma", timeout=60) == ("proved", "")
+
+
+@every_lemma
+def test_faults_in_a_lemma_are_found(lemma):
+    """Python's arithmetic confirms each counterexample.
+
+    Some faults are in the conclusion, which shows that the hypotheses do not contradict each other.
+    """
+    in_conclusion = 0
+    for right, wrong in LEMMA_FAULTS[lemma.label]:
+        fault = changed(lemma, right, wrong)
+        values = counterexample(fault, lemma.sorts())
+        assert values is not None, f"{right} -> {wrong}: still holds"
+        assert contradicted(fault, values), values
+        assert not contradicted(lemma, values), values
+        in_conclusion += fault.given == lemma.given
+    assert in_conclusion
+
+
+def test_a_fault_fails_the_proof_of_a_lemma(output):
+    """The outcome names the solver, and the detail has the numbers."""
+    [lemma] = [lemma for lemma in LEMMAS if lemma.label == "bounds"]
+    outcome, detail = prove_lemma(changed(lemma, "e > 0", "e != 0"), output / "lemma", timeout=60)
+    assert outcome == "z3 failed"
+    assert "(e " in detail

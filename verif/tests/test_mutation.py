@@ -15,7 +15,7 @@ import pytest
 from conftest import refused
 
 from raycaster.errors import UserError
-from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.leaf import Cycle, Leaf
 from raycaster.hdl.signals import bit, reset_signal, unsigned
 from raycaster.rtl.common.interfaces import SceneBus
 from raycaster.rtl.common.widths import WORD_BITS
@@ -37,23 +37,16 @@ from raycaster.verif.mutation.mutate import (
 )
 from raycaster.verif.recording import record as record_run
 
-WIDTH, COUNT = 3, 2
 MUTANTS = 30
 
 
-@pytest.fixture
-def recorded(tmp_path):
-    """Return a function that records a divider step, optionally with changed expectations."""
-
-    def record(remainders, change=dict) -> Recording:
-        ports = {"remainder": WIDTH, "digits": COUNT, "divisor": WIDTH, "next_remainder": WIDTH, "next_digits": COUNT}
-        leaf = Leaf(divider_step, lambda: {name: unsigned(width) for name, width in ports.items()}, tmp_path)
-        operands = product(remainders, range(1 << COUNT), range(1, 1 << WIDTH))
-        stimulus = [dict(zip(ports, each, strict=False)) for each in operands if each[0] < each[2]]
-        record_run(leaf, tmp_path / "recording", stimulus, [change(cycle) for cycle in leaf.run_myhdl(stimulus)], 0)
-        return Recording(tmp_path / "recording", tmp_path / "work")
-
-    return record
+def recorded(
+    block: Any, ports: dict[str, Callable[[], Any]], stimulus: list[Cycle], directory: Path, settled: int = 0
+) -> Recording:
+    """Record a block, given functions that make its ports."""
+    leaf = Leaf(block, lambda: {name: make() for name, make in ports.items()}, directory)
+    record_run(leaf, directory / "recording", stimulus, leaf.run_myhdl(stimulus), settled)
+    return Recording(directory / "recording", directory / "work")
 
 
 @pytest.fixture
@@ -62,31 +55,27 @@ def word(tmp_path) -> Recording:
     ports: dict[str, Callable[[], Any]] = {"clk": bit, "reset": reset_signal, "selected": bit}
     ports["bus"] = partial(SceneBus, 7)
     ports |= dict.fromkeys(("implemented", "shadow", "live"), partial(unsigned, WORD_BITS))
-    leaf = Leaf(scene_word, lambda: {name: make() for name, make in ports.items()}, tmp_path)
     written = {"reset": 0, "selected": 1, "bus_write": 1, "bus_mask": 0xFFFF, "bus_data": 0x5A5A, "implemented": 0xFFF}
-    stimulus = [{"reset": 1}, written, written]
-    record_run(leaf, tmp_path / "recording", stimulus, leaf.run_myhdl(stimulus), 1)
-    return Recording(tmp_path / "recording", tmp_path / "work")
+    return recorded(scene_word, ports, [{"reset": 1}, written, written], tmp_path, settled=1)
 
 
-@pytest.mark.slow
-def test_every_operand_catches_every_fault(recorded):
+def test_every_operand_catches_every_fault(tmp_path):
+    widths = {"remainder": 3, "digits": 2, "divisor": 3, "next_remainder": 3, "next_digits": 2}
+    ports = {name: partial(unsigned, width) for name, width in widths.items()}
+    operands = product(range(8), range(4), range(1, 8))
+    stimulus = [dict(zip(ports, each, strict=False)) for each in operands if each[0] < each[2]]
     contract = Expectation(assumptions={"remainder < divisor": "the division's invariant"})
-    result = recorded(range(1 << WIDTH)).run(MUTANTS, 1, contract)
+    result = recorded(divider_step, ports, stimulus, tmp_path).run(MUTANTS, 1, contract)
     assert len(result.mutants) == MUTANTS
     assert share_caught([result]) == 1
 
 
-def test_one_operand_leaves_survivors(recorded):
-    result = recorded([0]).run(MUTANTS, 1, Expectation())
-    assert any("remainder" in mutant.at for mutant in result.mutants if mutant.outcome == "surviving")
-    assert share_caught([result]) < 1
-
-
-def test_a_recording_that_does_not_fit_is_an_error(recorded):
-    wrong = recorded([0], lambda cycle: {**cycle, "next_digits": cycle["next_digits"] ^ 1})
+def test_a_recording_that_does_not_fit_is_an_error(word, tmp_path):
+    vectors = tmp_path / "recording" / "vectors.txt"
+    last = vectors.read_text().split()[-1]
+    vectors.write_text(vectors.read_text().removesuffix(f"{last}\n") + f"{int(last, 16) ^ 1:x}\n")
     with pytest.raises(MutationError, match="without any fault"):
-        wrong.run(MUTANTS, 1, Expectation())
+        word.run(MUTANTS, 1, Expectation())
 
 
 @pytest.mark.parametrize(
@@ -141,6 +130,7 @@ def test_bits_that_a_submodule_does_not_read_have_no_faults(tmp_path):
     fates = {(mutant.kind, mutant.port): mutant.outcome for mutant in mutants if mutant.mode == "inv"}
     assert [fates["ternary", f"Y[{place}]"] for place in (0, 1, 2, 6)] == ["surviving", "caught", "caught", "caught"]
     assert [fates["ternary", f"Y[{place}]"] for place in (3, 4, 5, 7)] == ["equivalent"] * 4
+    assert all(mutant.at.endswith("turn ? ~word : word") for mutant in mutants if mutant.kind == "ternary")
     # If fewer faults are requested than exist, exactly that many are planted, although some were dropped.
     assert len(Recording(directory, tmp_path / "few").plant(40, 1)) == 40
 
