@@ -26,15 +26,12 @@ class PinsBench(simulator.Bench):
     @property
     def sources(self) -> list[Path]:
         """Verilog files of the bench."""
-        return [
-            *(simulator.HERE / f"{name}.v" for name in ("bench_clock", "line_sink")),
-            Path(__file__).with_suffix(".v"),
-        ]
+        return [*super().sources[:-1], Path(__file__).with_suffix(".v")]
 
     def parameters(self, configuration: Configuration) -> dict[str, int]:
         """Return the parameters of the bench for a design."""
-        horizontal = configuration.screen_geometry.horizontal
-        return {"H_TOTAL": horizontal.total, "HS_ACTIVE": int(horizontal.active_high)}
+        parameters = super().parameters(configuration)
+        return {name: parameters[name] for name in ("H_TOTAL", "HS_ACTIVE")}
 
 
 @cocotb.test()

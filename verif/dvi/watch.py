@@ -34,8 +34,6 @@ from raycaster.sim.simulator import SimulationError, add_simulator_option, build
 
 SYMBOL_BITS = 10
 HERE = Path(__file__).parent
-TOP = "dvi_bench"
-BENCH = HERE / "bench.v"
 _CHANNELS = ("blue", "green", "red", "clock")
 
 
@@ -94,7 +92,7 @@ def _record(
     device = directory / "dvi_device.v"
     device.write_text(_device(board))
     program = build_program(
-        f"{board.name}-dvi", TOP, [*sources, HERE / "models.v", device, BENCH], simulator=simulator,
+        f"{board.name}-dvi", "dvi_bench", [*sources, HERE / "models.v", device, HERE / "bench.v"], simulator=simulator,
         flags=("-O3", "--output-split", "20000"), compiler=("-O1",),
     )  # fmt: skip
     done = subprocess.run([*program, *arguments], cwd=directory, capture_output=True, text=True, check=False)
@@ -154,19 +152,14 @@ def symbols(wires: np.ndarray) -> np.ndarray:
         return cut @ (1 << np.arange(SYMBOL_BITS))
 
     # Only where symbols start, control symbols follow one another.
-    starts = [[] for _ in _CHANNELS[:3]]
-    for start in range(SYMBOL_BITS):
-        control = np.isin(words(start), CONTROL_SYMBOLS)
-        for channel, found in enumerate(starts):
-            if (control[channel, 1:] & control[channel, :-1]).mean() > 0.05:
-                found.append(start)
-    for found in starts:
-        if len(found) != 1:
-            raise VideoError(f"control symbols are found at {len(found)} offsets, expected 1")
-    if starts[0] != starts[1] or starts[0] != starts[2]:
-        offsets = ", ".join(str(start) for [start] in starts)
-        raise VideoError(f"the channels' symbols start at different bits: {offsets}")
-    *colours, clock = words(starts[0][0])
+    control = (np.isin(words(start)[:3], CONTROL_SYMBOLS) for start in range(SYMBOL_BITS))
+    found = np.array([(one[:, 1:] & one[:, :-1]).mean(axis=1) > 0.05 for one in control])
+    if (found.sum(axis=0) != 1).any():
+        raise VideoError(f"control symbols are found at {found.sum(axis=0)} offsets, expected 1")
+    starts = found.argmax(axis=0)
+    if (starts != starts[0]).any():
+        raise VideoError(f"the channels' symbols start at different bits: {starts}")
+    *colours, clock = words(starts[0])
     if (clock != (1 << SYMBOL_BITS // 2) - 1).any():
         raise VideoError("the link's clock is not five ones and five zeros per symbol")
     return np.array(colours)

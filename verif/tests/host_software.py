@@ -13,100 +13,75 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from conftest import ROOT
-
 from raycaster.configuration import Configuration, configure
 from raycaster.memory_map import BUTTON_NAMES
-from raycaster.registers import register_map
-from raycaster.scene import Basis
 from raycaster.sim.register_model import LiveScene, RegisterFile, Request
+from raycaster.sw.firmware import SOFTWARE, STRICT
 
-SOFTWARE = ROOT / "sw"
 COMPILER = shutil.which("gcc") or shutil.which("cc")
-STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror")
-
 ON_HOST_BUS = ("-fcommon", "-include", Path(__file__).with_name("host_bus.h"))
 """Flags that connect the driver to `attached` registers."""
 
-DRIVER_HEADER, GAME_HEADER = SOFTWARE / "raycaster.h", SOFTWARE / "game" / "game.h"
-SEED = int(re.search(r"GAME_SEED = (\d+)", GAME_HEADER.read_text())[1])
-EVENTS = {
-    name: int(bit)
-    for name, bit in re.findall(r"GAME_(STARTED|RETURNED|TILE|LEVEL|MISSED|ENDED) = (\d+)", GAME_HEADER.read_text())
-}
-FIRE = 1 << BUTTON_NAMES.index("fire")
+DRIVER_HEADER = SOFTWARE / "raycaster.h"
 CONFIG = configure(engine="exact", screen="tiny", rectangles=12)
 """Design whose registers the software is tested with."""
 
+_HEADERS = re.sub(r"//.*", "", "".join(path.read_text() for path in (DRIVER_HEADER, SOFTWARE / "game" / "game.h")))
+SEED = int(re.search(r"GAME_SEED = (\d+)", _HEADERS)[1])
+FIRE = 1 << BUTTON_NAMES.index("fire")
+
+
+def enumeration(name: str) -> type[IntEnum]:
+    """Return an enumeration of the headers; its names lose their first word."""
+    body = re.search(rf"enum {name} {{(.*?)}}", _HEADERS, re.S)[1]
+    members = re.findall(r"[A-Z]+_(\w+)(?: = (\d+))?", body)
+    return IntEnum(name, [(member, int(value or place)) for place, (member, value) in enumerate(members)])
+
+
+Error, Event, Phase = map(enumeration, ("raycaster_error", "game_event", "game_phase"))
+
+TYPES: dict[str, type | None] = {"bool": ctypes.c_bool, "int": ctypes.c_int, "unsigned": ctypes.c_uint, "void": None}
+"""Numbers and the structures of the headers, as ctypes, by their names in C."""
+
+TYPES |= {f"{sign}int{bits}_t": getattr(ctypes, f"c_{sign}int{bits}") for sign in ("", "u") for bits in (8, 16, 32)}
+
+
+def _type(text: str) -> type | None:
+    """Return a type of the headers."""
+    *_, name = re.findall(r"\w+", text)
+    if "*" in text:
+        return ctypes.c_char_p if name == "char" else ctypes.POINTER(_type(name))
+    return ctypes.c_int if "enum" in text else TYPES[name]
+
+
+for _name, _body in re.findall(r"^struct (\w+) {(.*?)^};", _HEADERS, re.M | re.S):
+    _fields = [
+        (member, _type(kind) * CONFIG.rectangles if many else _type(kind))
+        for kind, member, many in re.findall(r"([\w ]+[ *])(\w+)(\[GAME_RECTANGLES\])?;", _body)
+    ]
+    TYPES[_name] = type(_name, (ctypes.Structure,), {"_fields_": _fields})
+
+RayCaster, Game = TYPES["raycaster"], TYPES["game"]
 _Read = ctypes.CFUNCTYPE(ctypes.c_uint32, ctypes.c_uint32)
 _Write = ctypes.CFUNCTYPE(None, ctypes.c_uint32, ctypes.c_uint32)
 
-_NUMBERS = {"bool": ctypes.c_bool, "int": ctypes.c_int, "unsigned": ctypes.c_uint, "void": None} | {
-    f"{sign}int{bits}_t": getattr(ctypes, f"c_{sign}int{bits}") for sign in ("", "u") for bits in (8, 16, 32)
-}
 
-
-def enumerators(header: Path, name: str) -> list[str]:
-    """Return the names in an enumeration of a header, whose values count from 0."""
-    body = re.search(rf"enum {name} {{(.*?)}}", header.read_text(), re.S)[1]
-    assert "=" not in body
-    return re.findall(r"\w+", body)
-
-
-Error = IntEnum(
-    "Error", [name.removeprefix("RAYCASTER_") for name in enumerators(DRIVER_HEADER, "raycaster_error")], start=0
-)
-
-
-class Header:
-    """Types of the headers in sw/, as ctypes."""
-
-    def __init__(self, *paths: Path):
-        self._text = re.sub(r"//.*", "", "".join(path.read_text() for path in paths))
-        self._structures: dict[str, type[ctypes.Structure]] = {}
-        self._lengths = {"GAME_RECTANGLES": CONFIG.rectangles}
-        for name, body in re.findall(r"^struct (\w+) {(.*?)^};", self._text, re.M | re.S):
-            members = re.findall(r"([\w ]+[ *])(\w+)(?:\[(\w+)\])?;", body)
-            fields = [
-                (member, self._type(kind) * self._lengths[length] if length else self._type(kind))
-                for kind, member, length in members
-            ]
-            self._structures[name] = type(name, (ctypes.Structure,), {"_fields_": fields})
-
-    def __getitem__(self, name: str) -> type[ctypes.Structure]:
-        return self._structures[name]
-
-    def _type(self, text: str) -> type | None:
-        *_, name = re.findall(r"\w+", text)
-        if "*" in text:
-            return ctypes.c_char_p if name == "char" else ctypes.POINTER(self._type(name))
-        return ctypes.c_int if "enum" in text else self._structures.get(name) or _NUMBERS[name]
-
-    def declare(self, library: ctypes.CDLL) -> None:
-        """Give a library's functions the types in their prototypes, so that arguments are converted as in C."""
-        for kind, name, arguments in re.findall(r"^(\w[\w ]+[ *])(\w+)\(([^)]*)\);", self._text, re.M):
-            if hasattr(library, name):
-                function = getattr(library, name)
-                function.argtypes = [self._type(re.sub(r"\w+$", "", one)) for one in arguments.split(",")]
-                function.restype = Error if "enum raycaster_error" in kind else self._type(kind)
-
-
-HEADER = Header(DRIVER_HEADER, GAME_HEADER)
-RayCaster, Game = HEADER["raycaster"], HEADER["game"]
-
-
-def basis_of(turned: ctypes.Structure) -> Basis:
-    """Convert a basis from C."""
-    return tuple(tuple(getattr(getattr(turned, name), axis) for axis in "xyz") for name, _ in turned._fields_)
+def members(structure: ctypes.Structure) -> tuple:
+    """Convert a structure, with those in it, to tuples."""
+    values = (getattr(structure, name) for name, _ in structure._fields_)
+    return tuple(members(value) if isinstance(value, ctypes.Structure) else value for value in values)
 
 
 def compile_library(directory: Path, *sources: str | Path, flags: Sequence[str | Path] = ON_HOST_BUS) -> ctypes.CDLL:
-    """Compile sources from sw/, or from elsewhere by absolute path, and load them."""
+    """Compile sources from sw/, or from elsewhere by absolute path, and load them with the types in the prototypes."""
     library = directory / "library.so"
     command = [COMPILER, *STRICT, "-O1", "-shared", "-fPIC", f"-I{SOFTWARE}", "-o", library, *flags]
     subprocess.run([*command, *(SOFTWARE / source for source in sources)], check=True)
     loaded = ctypes.CDLL(library)
-    HEADER.declare(loaded)
+    for kind, name, arguments in re.findall(r"^(\w[\w ]+[ *])(\w+)\(([^)]*)\);", _HEADERS, re.M):
+        if function := getattr(loaded, name, None):
+            function.argtypes = [_type(re.sub(r"\w+$", "", one)) for one in arguments.split(",")]
+            function.restype = Error if "enum raycaster_error" in kind else _type(kind)
     return loaded
 
 
@@ -116,15 +91,14 @@ class Registers:
     Attributes:
         file: the model.
         written: byte offsets and words of all writes, in order.
-        polls_to_frame: reads of the pending interrupt until the next StartScreen, or None for never.
+        polls_to_frame: reads of the pending interrupt, or of an unfinished commit, until the next StartScreen, or 0.
     """
 
     def __init__(self, config: Configuration, **said: dict[str, int]):
         """Make the registers of a design; some read-only registers say something else than the design's facts."""
         self.file = RegisterFile(config)
         self.written: list[tuple[int, int]] = []
-        self.polls_to_frame: int | None = None
-        self._pending = 4 * register_map(config.rectangles)["irq_pending"].address
+        self.polls_to_frame = 0
         self.file.clock(True, None)
         words, known = self.file.agent._constants, self.file.agent.registers
         for name, fields in said.items():
@@ -132,29 +106,27 @@ class Registers:
 
     def read(self, offset: int) -> int:
         """Read the word at an offset in bytes."""
-        assert offset % 4 == 0
-        if offset == self._pending and self.polls_to_frame is not None:
+        agent = self.file.agent
+        name = agent.addresses.get(offset // 4)
+        if self.polls_to_frame and (name == "irq_pending" or (name == "control" and agent.commit)):
             self.polls_to_frame -= 1
-            if self.polls_to_frame == 0:
-                self.polls_to_frame = None
+            if not self.polls_to_frame:
                 self.start_screen()
-        self._request(Request(offset // 4))
-        return self.file.agent.answer[1]
+        self._request(offset)
+        return agent.answer[1]
 
     def write(self, offset: int, word: int) -> None:
         """Write a word at an offset in bytes."""
-        assert offset % 4 == 0
         self.written.append((offset, word))
-        self._request(Request(offset // 4, word))
+        self._request(offset, word)
 
-    def _request(self, request: Request) -> None:
-        while not self.file.clock(False, request):
+    def _request(self, offset: int, word: int | None = None) -> None:
+        assert offset % 4 == 0
+        while not self.file.clock(False, Request(offset // 4, word)):
             pass
         # One clock to answer or to write, and one for a commit's copy.
-        self.file.clock(False, None)
-        answer = self.file.agent.answer
-        self.file.clock(False, None)
-        self.file.agent.answer = answer
+        for _ in range(2):
+            self.file.clock(False, None)
 
     def start_screen(self) -> LiveScene:
         """Let StartScreen come now; return the live scene."""
@@ -237,11 +209,7 @@ class Session:
     def step(self, buttons: int) -> set[str]:
         """Run a frame with these buttons, without drawing; return its events."""
         bits = self.software.game_step(self.game, buttons)
-        return {name for name, bit in EVENTS.items() if bits & bit}
-
-    def autoplay(self) -> int:
-        """Return the buttons that a good player would hold now."""
-        return self.software.game_autoplay(self.game)
+        return {event.name for event in Event if bits & event}
 
     def play(self, script: Iterable[int]) -> Iterator[Frame]:
         """Play, draw and show frame after frame; the sticky errors must stay clear."""
@@ -253,11 +221,3 @@ class Session:
             live = self.device.shown()
             assert self.device.check() == Error.OK
             yield Frame(events, live, written)
-
-    def start(self) -> None:
-        """Press fire in attract mode."""
-        assert self.step(FIRE) == {"STARTED"}
-
-    def phase(self) -> str:
-        """Return the name of the phase in `enum game_phase`."""
-        return enumerators(GAME_HEADER, "game_phase")[self.game.phase].removeprefix("GAME_")

@@ -14,28 +14,26 @@ from generated import examples, options
 from host_software import (
     CONFIG,
     DRIVER_HEADER,
-    HEADER,
-    SOFTWARE,
-    STRICT,
+    TYPES,
     Device,
     Error,
     RayCaster,
     Registers,
-    basis_of,
     compile_library,
-    enumerators,
+    enumeration,
+    members,
 )
 from hypothesis import given, reject
 from tcl import tcl_calls
 
-from raycaster.configuration import Configuration, ConfigurationError, configure
+from raycaster.configuration import ConfigurationError, configure
 from raycaster.convert.take_home import TOP
 from raycaster.engines import ENGINES, EXACT
 from raycaster.golden.engines import model_of
 from raycaster.golden.world import Rectangles
 from raycaster.registers import register_map
-from raycaster.scene import PATTERNS, UNTURNED, Camera, Scene, load_scene
-from raycaster.sim.register_model import LiveScene
+from raycaster.scene import PATTERNS, UNTURNED, Camera, load_scene
+from raycaster.sw.firmware import SOFTWARE, STRICT
 from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.seeds import seed
 
@@ -77,9 +75,9 @@ def test_probe_reads_the_configuration(library, chosen):
 
 
 def test_the_header_names_every_engine_and_pattern():
-    engines, patterns = (enumerators(DRIVER_HEADER, f"raycaster_{what}") for what in ("engine", "pattern"))
-    assert dict(enumerate(engines)) == {engine.code: f"RAYCASTER_{name.upper()}" for name, engine in ENGINES.items()}
-    assert patterns == [f"RAYCASTER_{name.upper()}" for name in PATTERNS]
+    engines, patterns = enumeration("raycaster_engine"), enumeration("raycaster_pattern")
+    assert {one.name: one.value for one in engines} == {name.upper(): one.code for name, one in ENGINES.items()}
+    assert [*patterns.__members__] == [name.upper() for name in PATTERNS]
 
 
 @pytest.mark.parametrize(
@@ -97,22 +95,6 @@ def test_probe_refuses_others(library, register, fields, expected):
     assert not device.registers.written
 
 
-class ShownWhenPolled(Registers):
-    """A register model that makes a commit live while software polls for it."""
-
-    live: LiveScene | None = None
-    polls = 0
-
-    def read(self, offset: int) -> int:
-        control = MAP["control"]
-        committing = self.written and self.written[-1][1] & control.fields["commit"].mask
-        if self.live is None and committing and offset == 4 * control.address:
-            self.polls += 1
-            if self.polls == 3:
-                self.live = self.start_screen()
-        return super().read(offset)
-
-
 @pytest.mark.parametrize("language", ["c", "python"])
 def test_the_programs_of_the_page(language, tmp_path):
     """Unchanged, the page's programs draw the same picture of their rectangle as the golden model."""
@@ -122,7 +104,8 @@ def test_the_programs_of_the_page(language, tmp_path):
     )
     program, *_ = re.findall(rf"^```{language}\n(.*?)^```", PAGE.read_text(), re.M | re.S)
     assert len(program.splitlines()) <= 23
-    model = ShownWhenPolled(CONFIG)
+    model = Registers(CONFIG)
+    model.polls_to_frame = 3
     if language == "c":
         (tmp_path / "main.c").write_text(program)
         library = compile_library(tmp_path, "raycaster.c", tmp_path / "main.c")
@@ -133,33 +116,12 @@ def test_the_programs_of_the_page(language, tmp_path):
         names["draw"](scene, model.read, model.write)
         with pytest.raises(OSError, match="no ray tracer"):
             names["draw"](scene, lambda address: 0, model.write)
-    assert model.live.run
+    live = model.file.live
+    assert live.run
     golden, screen = model_of(CONFIG), configure(engine="exact").screen_geometry
-    shown = model.live.picture(golden, screen)
+    shown = live.picture(golden, screen)
     assert np.unique(shown.reshape(-1, 3), axis=0).shape[0] > 1
     np.testing.assert_array_equal(shown, golden.render(load_scene(scene), screen, 1))
-
-
-def draw(device: Device, scene: Scene, config: Configuration) -> LiveScene:
-    """Show a scene through the driver."""
-    device.set_background(scene.background)
-    device.set_camera(scene.camera.position)
-    if config.turn:
-        device.set_basis(scene.camera.basis)
-    if scene.light:
-        device.set_light(scene.light.position, scene.light.quarters)
-    for index, one in enumerate(scene.rect):
-        device.set_rectangle(index, *one.corners, one.colour)
-        if config.materials:
-            device.set_mirror(index, one.quarters)
-        if one.kind:
-            device.set_pattern(index, one.kind, one.cell, one.colour2)
-    for index in range(len(scene.rect), config.rectangles):
-        device.enable_rectangle(index, False)
-    device.set_run(True)
-    device.set_reflections(scene.reflections)
-    assert device.errors == []
-    return device.shown()
 
 
 @pytest.mark.parametrize("config", [CONFIG, EVERYTHING, LARGE], ids=lambda config: config.name)
@@ -168,7 +130,24 @@ def test_any_scene_is_shown(library, config):
     device = Device(library, Registers(config))
     for number in range(24):
         scene = random_scene(100 * seed() + number, config.rectangles, 1, config.looks)
-        live = draw(device, scene, config)
+        device.set_background(scene.background)
+        device.set_camera(scene.camera.position)
+        if config.turn:
+            device.set_basis(scene.camera.basis)
+        if scene.light:
+            device.set_light(scene.light.position, scene.light.quarters)
+        for index, one in enumerate(scene.rect):
+            device.set_rectangle(index, *one.corners, one.colour)
+            if config.materials:
+                device.set_mirror(index, one.quarters)
+            if one.kind:
+                device.set_pattern(index, one.kind, one.cell, one.colour2)
+        for index in range(len(scene.rect), config.rectangles):
+            device.enable_rectangle(index, False)
+        device.set_run(True)
+        device.set_reflections(scene.reflections)
+        assert device.errors == []
+        live = device.shown()
         assert (live.run, live.reflections, live.background) == (True, scene.reflections, scene.background)
         assert (live.camera, live.basis) == (scene.camera.position, scene.camera.basis)
         if scene.light:
@@ -283,12 +262,12 @@ def test_angles_match_those_of_scenes(library, random):
     angles += random.integers(-360, 361, (12000, 3)).tolist()
     for yaw, pitch, roll in angles:
         wanted = Camera(position=(0, 0, 0), yaw=yaw, pitch=pitch, roll=roll).basis
-        assert basis_of(library.raycaster_turned(yaw, pitch, roll)) == wanted, (yaw, pitch, roll)
+        assert members(library.raycaster_turned(yaw, pitch, roll)) == wanted, (yaw, pitch, roll)
 
 
 def test_angles_of_any_size(library):
-    def of(*angles: int):
-        return basis_of(library.raycaster_turned(*angles))
+    def of(*angles: int) -> tuple:
+        return members(library.raycaster_turned(*angles))
 
     for turns in (-5, 7, 5_000_000):
         assert of(30 + 360 * turns, -20, 77 - 360 * turns) == of(30, -20, 77)
@@ -332,28 +311,17 @@ def test_waiting_for_a_frame(device):
 
 def test_the_interrupt(device):
     agent = device.registers.file.agent
-
-    def raised() -> bool:
-        return agent.irq_enable and agent.irq_pending
-
-    device.registers.start_screen()
-    assert not raised()
     device.enable_interrupt(True)
-    assert raised()
-    assert device.acknowledge()
-    assert not raised()
-    assert not device.acknowledge()
     device.registers.start_screen()
-    assert raised()
+    assert agent.irq_enable and agent.irq_pending
+    assert device.acknowledge()
+    assert agent.irq_enable and not agent.irq_pending
+    assert not device.acknowledge()
     device.enable_interrupt(False)
-    assert not raised()
+    assert not agent.irq_enable
 
 
 def test_sticky_errors(device):
-    def status() -> tuple[int, ...]:
-        found = device.get_status()
-        return tuple(getattr(found, name) for name in ("frame", "busy", "underrun", "bad_rectangle"))
-
     assert device.check() == Error.OK
     # Bypass the driver, which would refuse the rectangle.
     corner = MAP["rectangle[3].corner_0"]
@@ -365,17 +333,16 @@ def test_sticky_errors(device):
     assert device.check() == Error.UNDERRUN
     for _ in range(3):
         device.registers.start_screen()
-    assert status() == (3, False, True, True)
+    assert members(device.get_status()) == (3, False, True, True)
     device.clear_status()
     assert device.check() == Error.OK
-    assert status() == (3, False, False, False)
+    assert members(device.get_status()) == (3, False, False, False)
 
 
 def test_cycles(device):
     device.registers.file.agent.row, device.registers.file.agent.group = 1234, 321
     for expected in ((1234, 321), (0, 0)):
-        cycles = device.get_cycles()
-        assert (cycles.row, cycles.group) == expected
+        assert members(device.get_cycles()) == expected
         device.clear_cycles()
 
 
@@ -399,7 +366,7 @@ def test_plain_memory_and_no_library(tmp_path, standard, level):
     device = RayCaster()
     assert library.raycaster_probe(device, memory) == Error.OK
     assert (device.units, device.rectangles, device.rows) == (4, 12, 240)
-    assert library.raycaster_set_camera(device, HEADER["raycaster_point"](1, 2, 3)) == Error.OK
+    assert library.raycaster_set_camera(device, TYPES["raycaster_point"](1, 2, 3)) == Error.OK
     assert memory[MAP["camera"].address] == MAP["camera"].pack(x=1, y=2, z=3)
 
 

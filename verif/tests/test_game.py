@@ -12,15 +12,13 @@ import numpy as np
 import pytest
 from host_software import (
     FIRE,
-    GAME_HEADER,
-    Device,
     Error,
     Frame,
     Game,
-    Registers,
+    Phase,
     Session,
     compile_library,
-    enumerators,
+    enumeration,
 )
 
 from raycaster.configuration import configure
@@ -31,7 +29,7 @@ from raycaster.scene import Camera
 from raycaster.sim.register_model import LiveScene
 from raycaster.sw.play_script import DEMO, PlayScriptError, dump, load
 
-ENTRIES = {name.removeprefix("GAME_"): place for place, name in enumerate(enumerators(GAME_HEADER, "game_entry"))}
+Entry = enumeration("game_entry")
 COURT = {"x": (44, 281), "y": (89, 423), "z": (0, 264)}
 LIVES = 3
 CORNER = 0b0101
@@ -52,7 +50,7 @@ def attract(library) -> Session:
 @pytest.fixture
 def session(attract) -> Session:
     """Session in which fire was pressed."""
-    attract.start()
+    assert attract.step(FIRE) == {"STARTED"}
     return attract
 
 
@@ -133,8 +131,8 @@ def test_attract_mode_plays_by_itself_for_ever(attract):
 def test_a_good_player_sees_every_level(session):
     speeds = {}
     for _ in range(60_000):
-        session.step(session.autoplay())
-        if session.phase() == "RALLY":
+        session.step(session.software.game_autoplay(session.game))
+        if session.game.phase == Phase.RALLY:
             speeds.setdefault(session.game.level, abs(session.game.velocity.x))
         if session.game.attract:
             break
@@ -146,7 +144,7 @@ def test_a_good_player_sees_every_level(session):
 def test_lives_are_lost_and_the_game_ends(session):
     assert not session.game.attract
     missed = 0
-    while session.phase() != "OVER":
+    while session.game.phase != Phase.OVER:
         missed += "MISSED" in session.step(CORNER)
         assert session.game.lives == LIVES - missed
     assert missed == LIVES
@@ -158,23 +156,23 @@ def test_lives_are_lost_and_the_game_ends(session):
 
 
 def test_fire_starts_anew_but_not_in_haste(session):
-    while session.phase() != "OVER":
+    while session.game.phase != Phase.OVER:
         session.step(CORNER)
     for held in 30 * (0, FIRE):
         assert session.step(held) == set()
-        assert session.phase() == "OVER"
+        assert session.game.phase == Phase.OVER
     assert session.step(FIRE) == set(), "it is still held"
     session.step(0)
-    session.start()
+    assert session.step(FIRE) == {"STARTED"}
     assert (session.game.score, session.game.level, session.game.lives) == (0, 1, LIVES)
 
 
 def test_fire_serves(session):
-    for buttons, phase in ((0, "SERVE"), (FIRE, "RALLY")):
+    for buttons, phase in ((0, Phase.SERVE), (FIRE, Phase.RALLY)):
         # Fire is still held from the start, and serves only when it is pressed again.
         for held in (FIRE, buttons):
             session.step(held)
-        assert session.phase() == phase
+        assert session.game.phase == phase
 
 
 @pytest.mark.parametrize(("button", "axis", "sign"), [(0, "y", -1), (1, "y", 1), (2, "z", 1), (3, "z", -1)])
@@ -188,7 +186,7 @@ def test_buttons_move_the_racket(session, button, axis, sign):
 
 
 def test_bars_show_lives_and_tiles(demo):
-    bars = [ENTRIES[f"{name}_BAR"] for name in ("LIVES", "SCORE")]
+    bars = [Entry.LIVES_BAR, Entry.SCORE_BAR]
     shown = set()
     for frame, game in demo:
         if not game.attract:
@@ -208,10 +206,10 @@ def test_the_score_follows_from_the_events(demo):
 
 
 def test_hit_rectangles_flash(demo):
-    for event, name in (("RETURNED", "RACKET"), ("TILE", "TARGET")):
+    for event, entry in (("RETURNED", Entry.RACKET), ("TILE", Entry.TARGET)):
         white = 0
         for frame, _ in demo:
-            is_white = frame.live.rectangles.colours[ENTRIES[name]].tolist() == [255, 255, 255]
+            is_white = frame.live.rectangles.colours[entry].tolist() == [255, 255, 255]
             assert is_white or event not in frame.events
             white = white + 1 if is_white else 0
             assert white < 10
@@ -222,17 +220,17 @@ def test_a_miss_turns_the_walls_red_and_the_end_hides_the_ball(attract):
     missed = [number for number, frame in enumerate(frames) if "MISSED" in frame.events]
     over = next(number for number, frame in enumerate(frames) if "ENDED" in frame.events)
     for number, frame in enumerate(frames[: over + 200]):
-        red, green, blue = frame.live.rectangles.colours[ENTRIES["BACK_WALL"]]
+        red, green, blue = frame.live.rectangles.colours[Entry.BACK_WALL]
         recent = any(number - 24 < one <= number for one in missed)
         assert (red > 2 * max(green, blue)) == (recent or number >= over)
-        ball, lives = frame.live.rectangles.enabled[[ENTRIES["BALL"], ENTRIES["LIVES_BAR"]]]
+        ball, lives = frame.live.rectangles.enabled[[Entry.BALL, Entry.LIVES_BAR]]
         assert (ball, lives) == (number < over, sum(one <= number for one in missed) < LIVES)
 
 
 def test_mirrors_show_what_the_veil_hides(demo):
     """In some frames only reflected rays meet the ball."""
     slopes = primary_slopes(configure(engine="exact", screen="tiny").screen_geometry).reshape(-1, 3)
-    ball = ENTRIES["BALL"]
+    ball = Entry.BALL
     met = set()
     for frame, _ in demo[80:220:10]:
         live = frame.live
@@ -245,7 +243,7 @@ def test_mirrors_show_what_the_veil_hides(demo):
 def test_no_ray_meets_an_edge_of_the_court(session):
     """This holds for every camera position that the racket leads to."""
     slope = primary_slopes(configure(engine="exact").screen_geometry).reshape(-1, 3)
-    walls = [ENTRIES[name] for name in ("FLOOR", "CEILING", "LEFT_WALL", "RIGHT_WALL", "BACK_WALL")]
+    walls = [Entry.FLOOR, Entry.CEILING, Entry.LEFT_WALL, Entry.RIGHT_WALL, Entry.BACK_WALL]
     eyes = set()
     for frame in session.play([0b0001] * 60 + [0b0010] * 120):
         eyes.add(frame.live.camera)
@@ -273,7 +271,7 @@ def test_the_player_looks_after_the_ball(library):
         assert frame.live.basis == camera.basis
         changed = number == 0 or turns[-1] != turns[-2]
         assert len({offset for offset, _ in frame.written} & basis) == (3 if changed else 0)
-        front = frame.live.rectangles.low[ENTRIES["FLOOR"]][0]
+        front = frame.live.rectangles.low[Entry.FLOOR][0]
         for slope in edges @ np.array(frame.live.basis):
             assert COURT["y"][0] < camera.position[1] + slope[1] * front / slope[0] < COURT["y"][1]
         # The camera follows the ball's position in the previous frame.
@@ -284,13 +282,14 @@ def test_the_player_looks_after_the_ball(library):
     assert (min(turns), max(turns)) == (-3, 3)
 
 
-def test_a_table_that_is_too_small(attract):
-    attract.registers = Registers(configure(engine="exact", screen="tiny", rectangles=11))
-    attract.device = Device(attract.software, attract.registers)
-    assert attract.draw() == Error.NO_SUCH_RECTANGLE
-    written = len(attract.registers.written)
-    assert attract.draw() == Error.NO_SUCH_RECTANGLE
-    assert len(attract.registers.written) == 2 * written, "after an error everything is written again"
+def test_a_table_that_is_too_small(library):
+    session = Session(library, config=configure(engine="exact", screen="tiny", rectangles=11))
+    written = []
+    for _ in range(2):
+        session.registers.written.clear()
+        assert session.draw() == Error.NO_SUCH_RECTANGLE
+        written.append(list(session.registers.written))
+    assert written[0] == written[1] != [], "after an error everything is written again"
 
 
 def test_a_script_holds_buttons_until_the_next_line(tmp_path):
