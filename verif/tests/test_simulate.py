@@ -26,24 +26,18 @@ SMALL = configure(screen="tiny", units=8, rectangles=3)
 SMALL_OPTIONS = (SMALL_SCENE, "--screen", "tiny", "--units", 8, "--rectangles", 3, "--simulator", "icarus")
 
 
-def _sim(*arguments: object, build: Path) -> str:
-    """Run the command, which must succeed, and return its output."""
+def _sim(build: Path, *arguments: object, code: int = 0) -> str:
+    """Run the command, which must end with a code, and return its output."""
     ran = called("sim", "--build", str(build), *map(str, SMALL_OPTIONS + arguments), cwd=ROOT)
-    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert ran.returncode == code, ran.stdout + ran.stderr
     return ran.stdout
 
 
-@pytest.fixture
-def build(tmp_path: Path) -> Path:
-    """Return a separate build directory."""
-    return tmp_path / "build"
-
-
-def test_one_scene_and_two(build, tmp_path, monkeypatch):
+def test_one_scene_and_two(tmp_path, monkeypatch):
     """The run writes pictures, results and a table; with waveforms, it names their file; a sheet shows both scenes."""
     monkeypatch.delenv(MODELS_VARIABLE)  # so that no built model is found
-    said = _sim("--waves", build=build)
-    output = build / "sim-tiny" / "small"
+    said = _sim(tmp_path, "--waves")
+    output = tmp_path / "sim-tiny" / "small"
     for name in ("frame", "golden", "exact", "diff"):
         assert Image.open(output / f"{name}.png").size == (128, 96)
     assert (output / "frame.png").read_bytes() == (output / "golden.png").read_bytes()
@@ -57,9 +51,9 @@ def test_one_scene_and_two(build, tmp_path, monkeypatch):
 
     other = tmp_path / "other.toml"
     other.write_text(SMALL_SCENE.read_text().replace("#c8c8b4", "#ff0000"))
-    said = _sim(other, "--waves", build=build)
+    said = _sim(tmp_path, other, "--waves")
     assert "was built before" in said
-    sheet, output = Image.open(build / "sim-tiny" / "scenes.png"), output.parent
+    sheet, output = Image.open(tmp_path / "sim-tiny" / "scenes.png"), output.parent
     assert sheet.size == (2 * 320 + 8, 240)
     floors = [sheet.getpixel((left + 160, 235)) for left in (0, 328)]
     assert floors == [Image.open(output / name / "frame.png").getpixel((64, 94)) for name in ("small", "other")]
@@ -130,19 +124,17 @@ def test_an_interrupted_run_leaves_the_pictures(tmp_path, monkeypatch):
     assert before.read_text() == "as it was"
 
 
-def test_a_wrong_pixel_fails(build):
+def test_a_wrong_pixel_fails(tmp_path):
     """If the hardware differs from the golden model, the exit code is 1 and the output says where to look."""
-    (combiner,) = (path for path in convert(SMALL, build) if path.stem.startswith("colour_combiner"))
+    (combiner,) = (path for path in convert(SMALL, tmp_path) if path.stem.startswith("colour_combiner"))
     text, faults = re.subn(r"assign pixel_word = (.+);", r"assign pixel_word = ~\1;", combiner.read_text())
     assert faults
     combiner.write_text(text)
-    ran = called("sim", "--build", str(build), *map(str, SMALL_OPTIONS), cwd=ROOT)
-    assert ran.returncode == 1
-    assert "pixels are wrong" in ran.stdout
-    assert str(build / "sim-tiny" / "small" / "sim.log") in ran.stdout
-    assert str(build / "sim-tiny" / "small" / "diff.png") in ran.stdout
+    said = _sim(tmp_path, code=1)
+    output = tmp_path / "sim-tiny" / "small"
     command = f"raycaster trace {SMALL_SCENE} --pixel 0,0 --units 8 --rectangles 3 --screen tiny --simulator icarus"
-    assert command in ran.stdout
+    for text in ("pixels are wrong", str(output / "sim.log"), str(output / "diff.png"), command):
+        assert text in said
 
 
 def test_a_scene_chooses_what_it_needs(tmp_path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Finding tools and caching builds."""
+"""Finding and installing tools, and caching builds."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import importlib.metadata
 import os
 import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,7 +17,9 @@ from conftest import BUILD, write_script
 import raycaster.rtl
 from raycaster.configuration import configure
 from raycaster.digests import sources_digest
-from raycaster.sim import simulator
+from raycaster.errors import UserError
+from raycaster.sim import ensure_tools, simulator
+from raycaster.sim.ensure_tools import ensure, find, install_command
 from raycaster.sim.simulator import (
     MODELS_VARIABLE,
     VERILATOR_FLAGS,
@@ -29,6 +31,19 @@ from raycaster.sim.simulator import (
 )
 
 TINY = configure(engine="exact", screen="tiny", units=2, rectangles=1)
+
+
+@pytest.fixture
+def machine(tmp_path, monkeypatch) -> Callable[..., None]:
+    """Return a function that lets only some programs be on the path, for a user."""
+
+    def make(uid: int, **programs: str) -> None:
+        for name, script in programs.items():
+            write_script(tmp_path / "bin", name, script)
+        monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+        monkeypatch.setattr(os, "geteuid", lambda: uid)
+
+    return make
 
 
 @pytest.fixture
@@ -49,10 +64,9 @@ def own_models(monkeypatch):
         (" rev vUNKNOWN", False),
     ],
 )
-def test_system_verilator(tmp_path, monkeypatch, says, taken):
+def test_system_verilator(machine, says, taken):
     """Only a version that cocotb accepts is used."""
-    write_script(tmp_path, "verilator", f"echo '{says}'")
-    monkeypatch.setenv("PATH", str(tmp_path))
+    machine(0, verilator=f"echo '{says}'")
     assert (system_verilator() is not None) == taken
 
 
@@ -71,7 +85,70 @@ def test_models_build_without_python_on_the_path(tmp_path, monkeypatch):
     assert '#include "one.cpp"' in answer.stdout, answer.stderr
 
 
-@pytest.mark.parametrize("changes", ["common/clock_gate.v", "common/widths.py", "myhdl"])
+@pytest.mark.parametrize("uid", [0, 1000])
+@pytest.mark.parametrize(
+    ("manager", "icarus", "chromium"),
+    [
+        ("apt-get", "install -y -q iverilog", "install -y -q chromium"),
+        ("dnf", "install -y -q iverilog", "install -y -q chromium"),
+        ("pacman", "-S --noconfirm --needed iverilog", "-S --noconfirm --needed chromium"),
+        ("brew", "install icarus-verilog", "install --cask google-chrome"),
+    ],
+)
+def test_install_command(machine, manager, icarus, chromium, uid):
+    """The available package manager is used, through sudo unless the user is root or it needs none."""
+    machine(uid, **{manager: "exit 1"})
+    program = f"sudo {manager}" if uid and manager != "brew" else manager
+    for tool, expected in (("icarus", icarus), ("chromium", chromium)):
+        assert " ".join(install_command(tool)) == f"{program} {expected}"
+
+
+@pytest.mark.parametrize(
+    ("tool", "program"),
+    [("icarus", "iverilog"), ("chromium", "chromium"), ("chromium", "google-chrome"), ("tcl", "tclsh")],
+)
+def test_an_installed_tool_is_used(machine, tmp_path, monkeypatch, tool, program):
+    machine(0, **{program: "exit 1"})
+    monkeypatch.setattr(ensure_tools, "_run", lambda *command: pytest.fail(f"ran {command}"))
+    assert find(tool) == str(tmp_path / "bin" / program)
+    ensure(tool)
+
+
+@pytest.mark.parametrize(
+    ("uid", "managers", "complaint"),
+    [
+        (1000, {"apt-get": "exit 1"}, "Icarus .* needs root; run: sudo apt-get install -y -q iverilog$"),
+        (0, {}, "Icarus .*, and no package manager is known here; see steveicarus"),
+        (0, {"dnf": "exit 1"}, ".* could not be installed; run: dnf install -y -q iverilog$"),
+        (0, {"dnf": "exit 0"}, ".* could not be installed; run: dnf install -y -q iverilog$"),
+    ],
+    ids=["no root", "no manager", "no such package", "no program in it"],
+)
+def test_it_cannot_be_installed(machine, uid, managers, complaint):
+    """The error is one line that says what to run, if anything."""
+    machine(uid, **managers)
+    with pytest.raises(UserError, match=f"^{complaint}"):
+        ensure("icarus")
+
+
+@pytest.mark.parametrize(("tool", "program"), [("icarus", "iverilog"), ("chromium", "chromium"), ("tcl", "tclsh")])
+def test_it_is_installed(machine, tmp_path, capsys, tool, program):
+    """If root's first attempt fails, as in a fresh container, the package lists are updated before the next."""
+    install = (
+        f"if [ $1 = update ]; then : > {tmp_path}/lists; exit 0; fi\n"
+        f"[ -e {tmp_path}/lists ] || exit 100\n"
+        f"/bin/cp {tmp_path}/bin/template {tmp_path}/bin/{program}"
+    )
+    machine(0, **{"template": "exit 0", "apt-get": install})
+    ensure(tool)
+    assert find(tool)
+    assert "is missing; installing it: apt-get install" in capsys.readouterr().err
+
+
+# Models ---------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("changes", ["common/clock_gate.v", "myhdl"])
 def test_converts_once(tmp_path, monkeypatch, changes):
     """The second conversion finds the files, unless sources or MyHDL have changed."""
     folder = shutil.copytree(Path(raycaster.rtl.__path__[0]), tmp_path / "rtl")
@@ -114,14 +191,19 @@ def test_a_digest_changes_with_the_sources_that_decide(tmp_path):
     assert sources_digest(page) != of_page, "a file that is named counts"
 
 
-def test_builds_once(tmp_path, own_models):
-    """The second build finds the first; a changed source or a missing stamp causes a rebuild."""
+def test_builds_once(tmp_path, own_models, monkeypatch):
+    """The second build finds the first, whatever else is on the PATH; a changed source or a missing stamp causes a
+    rebuild."""
     files = convert(TINY, tmp_path)
 
     def build() -> bool:
         return build_model(TINY, "icarus", build=tmp_path).fresh
 
     assert build()
+    assert not build()
+    tool = simulator.find_tool("icarus")
+    elsewhere = replace(tool, environment={"PATH": f"/nowhere:{os.environ['PATH']}"})
+    monkeypatch.setattr(simulator, "find_tool", lambda name: elsewhere)
     assert not build()
     with files[0].open("a") as file:
         file.write("// changed\n")
@@ -154,16 +236,6 @@ def test_models_share_a_library(tmp_path, own_models, monkeypatch):
     assert library == other
     assert {Path(path).name for path in library} >= {"verilated.o", "verilated_vpi.o"}
     assert [path for path in library if path.endswith("_c.o")] == []
-
-
-@pytest.mark.slow
-def test_another_shell_finds_the_model(tmp_path, own_models, monkeypatch):
-    """The model is found whatever else is on the shell's PATH."""
-    assert build_model(TINY, "icarus", build=tmp_path).fresh
-    tool = simulator.find_tool("icarus")
-    elsewhere = replace(tool, environment={"PATH": f"/nowhere:{os.environ['PATH']}"})
-    monkeypatch.setattr(simulator, "find_tool", lambda name: elsewhere)
-    assert not build_model(TINY, "icarus", build=tmp_path).fresh
 
 
 def test_unused_models_are_removed(tmp_path, own_models):
