@@ -60,13 +60,6 @@ def window_clocks(configuration: Configuration, first_row: int, last_row: int) -
     return first * row_cycles, (last_row + 2) * row_cycles + MARGIN
 
 
-def check_rows(configuration: Configuration, rows: tuple[int, int]) -> None:
-    """Raise a UserError if the rows do not exist."""
-    (first, last), most = rows, configuration.screen_geometry.rows - 1
-    if not 0 <= first <= last <= most:
-        raise UserError(f"span: expected rows from 0 to {most} in rising order, got {first},{last}")
-
-
 def record(model: Model, design: Design, rows: tuple[int, int], target: Path) -> Path:
     """Simulate a scene's frame up to the last of some rows, write the waveform of these rows, and return its path.
 
@@ -77,10 +70,8 @@ def record(model: Model, design: Design, rows: tuple[int, int], target: Path) ->
         target: the output directory, replaced once the waveform is complete; it also gets the simulation's log.
 
     Raises:
-        UserError: there are no such rows.
         SimulationError: the simulation failed.
     """
-    check_rows(design.configuration, rows)
     begin, end = window_clocks(design.configuration, *rows)
     job = Job(design.configuration, scene=str(design.path.resolve()), reflections=design.reflections)
     with replaced(target) as filled:
@@ -106,7 +97,7 @@ def build_and_record(
         The waveform's path; None if the model or the simulation failed, after showing the reason.
 
     Raises:
-        UserError: there are no such rows, or the simulator is missing.
+        UserError: the simulator is missing.
     """
     check_replaceable(target)
     find_tool(arguments.simulator)

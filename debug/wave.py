@@ -13,7 +13,7 @@ from pathlib import Path
 from raycaster.convert.write import design_states
 from raycaster.debug.probes.engines import description_of
 from raycaster.debug.probes.ray import Ray
-from raycaster.debug.recorder import add_recording_options, build_and_record, check_rows, pixel_place
+from raycaster.debug.recorder import add_recording_options, build_and_record, pixel_place
 from raycaster.debug.wave_files import View, write_files
 from raycaster.debug.waves import Waves
 from raycaster.design import Design, design_for
@@ -21,21 +21,24 @@ from raycaster.errors import UserError
 from raycaster.options import CommandParser, given_options
 from raycaster.output import Console
 
-MEGABYTE = 1_000_000
 
-
-def rows_of(text: str | None, row: int) -> tuple[int, int]:
-    """Parse the first and the last row; without a text, both are the pixel's row.
+def rows_of(text: str | None, row: int, count: int) -> tuple[int, int]:
+    """Parse the first and the last of `count` rows; without a text, both are the pixel's row.
 
     Raises:
-        UserError: the text is not one or two numbers.
+        UserError: the text is not one or two numbers, or there are no such rows, or the pixel's is not among them.
     """
     if text is None:
         return row, row
     numbers = [number.strip() for number in text.split(",")]
     if len(numbers) > 2 or not all(number.isdecimal() for number in numbers):
         raise UserError(f"span: expected the first and the last row, as in 118,122, got {text}")
-    return int(numbers[0]), int(numbers[-1])
+    first, last = int(numbers[0]), int(numbers[-1])
+    if not first <= last < count:
+        raise UserError(f"span: expected rows from 0 to {count - 1} in rising order, got {first},{last}")
+    if not first <= row <= last:
+        raise UserError(f"span: rows {first} to {last} do not include the pixel's row {row}")
+    return first, last
 
 
 def write_view(path: Path, design: Design, ray: Ray) -> list[Path]:
@@ -79,18 +82,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     screen = design.configuration.screen_geometry
     column, row = pixel_place(arguments.pixel or f"{screen.centre_column},{screen.rows // 2}")
     ray = Ray(design, row, column)
-    rows = rows_of(arguments.span, row)
-    check_rows(design.configuration, rows)
-    if not rows[0] <= row <= rows[1]:
-        raise UserError(f"span: rows {rows[0]} to {rows[1]} do not include the pixel's row {row}")
+    rows = rows_of(arguments.span, row, screen.rows)
     console = Console(soft_wrap=True)
     target = arguments.build / "wave" / design.name
     waves = build_and_record(arguments, design, rows, target, console)
     if waves is None:
         return 1
     files = write_view(waves, design, ray)
-    size = waves.stat().st_size / MEGABYTE
-    console.print(f"{waves}: rows {rows[0]} to {rows[1]}, {size:.1f} MB")
+    console.print(f"{waves}: rows {rows[0]} to {rows[1]}, {waves.stat().st_size / 1e6:.1f} MB")
     command = None if arguments.no_viewer else viewer(waves, files)
     if command:
         with (waves.parent / "viewer.log").open("w") as log:

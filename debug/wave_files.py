@@ -7,7 +7,6 @@ import io
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
 from pathlib import Path
 
 from vcd.gtkw import GTKWFlag, GTKWSave, make_translation_filter
@@ -33,8 +32,8 @@ WAVES_WIDTH = 1050
 PIXELS_A_FRAME = 200
 """Pixels that span 2^zoom units of time in GTKWave."""
 
-SURFER_DIGITS = "abcdefghijklmnop"
-"""The sixteen digits with which Surfer numbers its items."""
+SURFER_DIGITS = str.maketrans("0123456789abcdef", "abcdefghijklmnop")
+"""The sixteen digits with which Surfer numbers its items, by the usual ones."""
 
 
 @dataclass(frozen=True)
@@ -60,8 +59,6 @@ def write_files(waves: Waves, view: View) -> list[Path]:
     Raises:
         UserError: the waveform lacks a signal.
     """
-    for name in chain.from_iterable(view.groups.values()):
-        waves.width(_name_and_kind(name)[0])
     directory = waves.path.resolve().parent
     filters = {}
     for place, names in view.states.items():
@@ -84,15 +81,12 @@ def _write(path: Path, text: str) -> Path:
     return partial.replace(path)
 
 
-def _name_and_kind(name: str) -> tuple[str, str]:
-    """Split a signal's full name, which may end with a range of its bits, from its number format."""
-    signal, _, kind = name.rpartition(":")
-    return (signal, kind) if signal and not kind.endswith("]") else (name, "")
-
-
 def _parts(name: str) -> tuple[str, str, tuple[str, str]]:
     """Split a name into the signal's full name, its number format, and its module and own name."""
-    signal, kind = _name_and_kind(name)
+    signal, _, kind = name.rpartition(":")
+    # The last colon may be that of a range of bits.
+    if not signal or kind.endswith("]"):
+        signal, kind = name, ""
     if kind not in FORMATS:
         raise UserError(f"{name}: unknown number format: {kind}")
     return signal, kind, (module_of(signal), signal.rpartition(".")[2])
@@ -145,14 +139,10 @@ def _surfer(waves: Waves, view: View) -> str:
             lines.append(f"variable_add {signal}")
             shown = ".".join(place) if place in view.states else SURFER_FORMATS[kind]
             if waves.width(signal) > 1:
-                lines += [f"item_focus {_letters(count)}", f"item_set_format {shown}", "item_unfocus"]
+                item = f"{count:x}".translate(SURFER_DIGITS)
+                lines += [f"item_focus {item}", f"item_set_format {shown}", "item_unfocus"]
             count += 1
     return "\n".join([*lines, f"cursor_set {waves.ticks(view.cursor_ns)}", "goto_cursor"]) + "\n"
-
-
-def _letters(number: int) -> str:
-    """Write a number as Surfer does."""
-    return "".join(SURFER_DIGITS[int(digit, 16)] for digit in f"{number:x}")
 
 
 def _labels(signals: Sequence[str]) -> list[str]:

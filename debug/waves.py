@@ -1,22 +1,20 @@
 # SPDX-License-Identifier: MIT
 """Read waveforms: signals by their hierarchical names, with their values at each rising edge of the clock.
 
-waves = Waves(Path("build/sim/boxes/waves.fst"))
-state = waves.find("bench.dut.*.ray_sequencer_i.state")
-samples = waves.sample([state, "bench.dut.progress_start_screen"], start_ns=1000, end_ns=2000)
-for time, value in zip(samples.times_ns, samples.values[state]):
+waves = Waves(Path("build/wave/boxes/waves.fst"))
+row = "bench.dut.ray_caster_renderer_i.place_row"
+samples = waves.sample([row, "bench.dut.avs_s0_write"], start_ns=1000)
+for time, value in zip(samples.times_ns, samples.values[row]):
     ...
 """
 
 from __future__ import annotations
 
 import difflib
-import math
 import re
-from bisect import bisect_left, bisect_right
+from bisect import bisect_left
 from collections.abc import Iterable
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +24,6 @@ from raycaster.errors import UserError
 
 CLOCK = "bench.clk"
 """Clock of every bench in this project."""
-
-SUGGESTIONS = 3
 
 RANGE = re.compile(r"(.+)\[(\d+):(\d+)\]")
 """A range of a signal's bits: the signal's name, the highest and the lowest bit."""
@@ -53,18 +49,14 @@ class Waves:
     """A waveform file: FST or VCD, as this project's benches write it.
 
     A name is the path of instances from the bench down, with dots: `bench.dut.ray_caster_renderer_i.row`. An element of
-    a memory has its number after the memory's name, in brackets. Methods that return values or widths also accept a
-    range of a signal's bits: `bench.dut.rect_mem_i.rects_rect_word[24:23]`, or `[23:23]` for one bit.
+    a memory has its number after the memory's name, in brackets. A name may end with a range of the signal's bits:
+    `bench.dut.rect_mem_i.rects_rect_word[24:23]`, or `[23:23]` for one bit.
 
     Each method raises a UserError if there is no such signal or clock, or if the signal lacks these bits.
     """
 
-    def __init__(self, path: Path, clock: str = CLOCK):
+    def __init__(self, path: Path):
         """Open a file; values are read only when needed.
-
-        Args:
-            path: the file.
-            clock: the signal whose rising edges `edges` and `sample` use.
 
         Raises:
             UserError: the file does not exist, or is not a waveform; a missing clock is reported on its first use.
@@ -72,47 +64,16 @@ class Waves:
         if not path.is_file():
             raise UserError(f"{path}: there is no such file")
         try:
-            self._file = pywellen.Waveform(str(path))  # pyright: ignore[reportAttributeAccessIssue] compiled, no stubs
+            file = pywellen.Waveform(str(path))  # pyright: ignore[reportAttributeAccessIssue] compiled, no stubs
         except RuntimeError as error:
             raise UserError(f"{path}: not a waveform: {error}") from None
         self.path = path
-        self._clock = clock
-        self._variables = {
-            variable.full_name.replace(".[", "["): variable
-            for variable in self._file.all_vars()
-            if variable.bitwidth is not None
-        }
+        self._variables = {variable.full_name.replace(".[", "["): variable for variable in file.all_vars()}
         self._changes: dict[str, tuple[list[int], list[int | None]]] = {}
-        scale = self._file.timescale
+        scale = file.timescale
         self.tick_units = scale.factor
         """Units (s, ms, ns, ps ...) per tick of the file: 1, 10 or 100."""
         self._tick_ns = scale.factor * 10.0 ** (scale.unit.to_exponent() + 9)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of all signals that consist of bits."""
-        return tuple(self._variables)
-
-    def matching(self, pattern: str) -> list[str]:
-        """List the signals whose full names match a pattern, in which `*` matches anything, dots included.
-
-        Brackets match themselves.
-        """
-        escaped = pattern.replace("[", "[[]")
-        return [name for name in self._variables if fnmatchcase(name, escaped)]
-
-    def find(self, pattern: str) -> str:
-        """Return the only signal that matches a pattern; see `matching`.
-
-        Raises:
-            UserError: no signal matches, or several do.
-        """
-        found = self.matching(pattern)
-        if len(found) > 1:
-            raise UserError(f"{self.path}: {pattern} matches {len(found)} signals: {found[0]}, {found[1]} ...")
-        if not found:
-            raise self._missing(pattern)
-        return found[0]
 
     def ticks(self, time_ns: float) -> int:
         """Convert a time to ticks of the file."""
@@ -133,34 +94,12 @@ class Waves:
             raise UserError(f"{self.path}: {signal} has {width} bits, which do not include {name.removeprefix(signal)}")
         return signal, high, low
 
-    def span_ns(self) -> tuple[float, float]:
-        """Return the times of the clock's first and last changes, in ns.
-
-        Raises:
-            UserError: the clock never changes.
-        """
-        times, _ = self._history(self._clock)
-        if not times:
-            raise UserError(f"{self.path}: {self._clock} never changes")
-        return times[0] * self._tick_ns, times[-1] * self._tick_ns
-
-    def value(self, name: str, time_ns: float) -> int | None:
-        """Return a signal's value at a time, including changes at that very time; see `Samples.values`."""
-        times, values = self._history(name)
-        place = bisect_right(times, self.ticks(time_ns))
-        return values[place - 1] if place else None
-
-    def changes(self, name: str) -> list[tuple[float, int | None]]:
-        """List a signal's changes: the time in ns and the new value, beginning with the initial value."""
-        return [(time * self._tick_ns, value) for time, value in zip(*self._history(name), strict=True)]
-
-    def edges(self, start_ns: float = 0, end_ns: float = math.inf) -> list[float]:
-        """List the clock's rising edges from start_ns on and before end_ns."""
-        return [time * self._tick_ns for time in self._edge_ticks(start_ns, end_ns)]
-
-    def sample(self, names: Iterable[str], start_ns: float = 0, end_ns: float = math.inf) -> Samples:
-        """Sample signals at each rising edge from start_ns on and before end_ns."""
-        edges = self._edge_ticks(start_ns, end_ns)
+    def sample(self, names: Iterable[str], start_ns: float = 0) -> Samples:
+        """Sample signals at each rising edge from start_ns on."""
+        ticks, levels = self._history(CLOCK)
+        # If the clock is high at the start of the file, its edge was earlier.
+        rising = [tick for i, tick in enumerate(ticks) if levels[i] == 1 and i and levels[i - 1] == 0]
+        edges = rising[bisect_left(rising, start_ns / self._tick_ns - 0.5) :]
         values = {}
         for name in names:
             times, after = self._history(name)
@@ -168,22 +107,12 @@ class Waves:
             values[name] = [after[place - 1] if place else None for place in places]
         return Samples([edge * self._tick_ns for edge in edges], values)
 
-    def _edge_ticks(self, start_ns: float, end_ns: float) -> list[int]:
-        times, values = self._history(self._clock)
-        # If the clock is high at the start of the file, its edge was earlier.
-        rising = [time for i, time in enumerate(times) if values[i] == 1 and i and values[i - 1] == 0]
-        first = bisect_left(rising, start_ns / self._tick_ns - 0.5)
-        return rising[first : bisect_left(rising, end_ns / self._tick_ns - 0.5)]
-
     def _variable(self, name: str) -> Any:
         if name not in self._variables:
-            raise self._missing(name)
+            near = difflib.get_close_matches(name, self._variables)
+            hint = f"; similar names: {', '.join(near)}" if near else ""
+            raise UserError(f"{self.path}: has no signal {name}{hint}")
         return self._variables[name]
-
-    def _missing(self, name: str) -> UserError:
-        near = difflib.get_close_matches(name, self._variables, SUGGESTIONS)
-        hint = f"; similar names: {', '.join(near)}" if near else ""
-        return UserError(f"{self.path}: has no signal {name}{hint}")
 
     def _history(self, name: str) -> tuple[list[int], list[int | None]]:
         """Return the ticks at which a signal changed, and its values from then on."""
@@ -195,12 +124,12 @@ class Waves:
         return self._changes[name]
 
 
-def _bits_of(value: int | str | float | None, high: int, low: int) -> int | None:
+def _bits_of(value: int | str, high: int, low: int) -> int | None:
     """Extract bits of a value, which is text if any of its bits is unknown; None if one of these is."""
     if isinstance(value, str):
         text = value[len(value) - 1 - high : len(value) - low]
         return int(text, 2) if text and set(text) <= {"0", "1"} else None
-    return value >> low & (1 << high - low + 1) - 1 if isinstance(value, int) else None
+    return value >> low & (1 << high - low + 1) - 1
 
 
 def signed(value: int | None, bits: int) -> int | None:

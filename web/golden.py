@@ -5,38 +5,33 @@ from __future__ import annotations
 
 import ctypes
 import subprocess
-from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from raycaster.configuration import Configuration
 from raycaster.errors import UserError
-from raycaster.options import BUILD
 from raycaster.screens import Screen
 from raycaster.sim.simulator import made, models
-from raycaster.web.wasm import DRIVER_HEADERS, GOLDEN, GOLDEN_FLAGS
+from raycaster.web.wasm import DRIVER_HEADERS, GOLDEN_FLAGS
 
 WORDS = 1024
-BOUNCE = 9
-"""Numbers per bounce."""
 
 
-class Golden(ABC):
-    """The program as its callers use it."""
+class Golden:
+    """The compiled program as its callers use it.
 
-    @abstractmethod
-    def call(self, name: str, *arguments: int) -> int:
-        """Call an exported function."""
+    Args:
+        call: calls an exported function, given its name and arguments.
+        read: reads the program's memory, given an address and a size.
+        write: writes the program's memory, given an address and bytes.
+    """
 
-    @abstractmethod
-    def read(self, address: int, size: int) -> bytes:
-        """Read the program's memory."""
-
-    @abstractmethod
-    def write(self, address: int, data: bytes) -> None:
-        """Write the program's memory."""
+    def __init__(
+        self, call: Callable[..., int], read: Callable[[int, int], bytes], write: Callable[[int, bytes], object]
+    ):
+        self.call, self.read, self.write = call, read, write
 
     def load(self, words: Iterable[tuple[int, int]]) -> None:
         """Replace the live words by these, with their word addresses."""
@@ -56,12 +51,6 @@ class Golden(ABC):
         data = self.read(self.call("golden_picture"), 3 * screen.columns * screen.rows)
         return np.frombuffer(data, dtype=np.uint8).reshape(screen.rows, screen.columns, 3)
 
-    def bounces(self, column: int, row: int) -> np.ndarray:
-        """Return the bounces of a pixel's ray, `BOUNCE` numbers each."""
-        count = self.call("golden_ray", column, row)
-        data = self.read(self.call("golden_bounces"), 8 * BOUNCE * count)
-        return np.frombuffer(data, dtype="<i8").reshape(count, BOUNCE)
-
 
 class NativeGolden(Golden):
     """The program compiled for this machine below `build`, unless it is already compiled.
@@ -70,26 +59,19 @@ class NativeGolden(Golden):
         UserError: the program cannot be compiled.
     """
 
-    def __init__(self, build: Path = BUILD, *, source: Path = GOLDEN, flags: Sequence[str] = ("-O2",)):
+    def __init__(self, build: Path, *, source: Path, flags: Sequence[str]):
         command = ("g++", *GOLDEN_FLAGS, *flags, "-fvisibility=hidden", "-shared", "-fPIC")
         with made(models(build), "golden-native", [source, *DRIVER_HEADERS], command) as (directory, fresh):
-            library = directory / "golden.so"
+            path = directory / "golden.so"
             if fresh:
-                done = subprocess.run([*command, source, "-o", library], capture_output=True, text=True, check=False)
+                done = subprocess.run([*command, source, "-o", path], capture_output=True, text=True, check=False)
                 if done.returncode:
                     raise UserError(f"{source.name}: g++ cannot compile it: {done.stderr.strip()}")
-            self._library = ctypes.CDLL(str(library))
-        for name in ("words", "picture", "bounces"):
-            getattr(self._library, f"golden_{name}").restype = ctypes.c_void_p
-
-    def call(self, name: str, *arguments: int) -> int:
-        """Call an exported function."""
-        return getattr(self._library, name)(*map(int, arguments))
-
-    def read(self, address: int, size: int) -> bytes:
-        """Read the program's memory."""
-        return ctypes.string_at(address, size)
-
-    def write(self, address: int, data: bytes) -> None:
-        """Write the program's memory."""
-        ctypes.memmove(address, data, len(data))
+            library = ctypes.CDLL(str(path))
+        for name in ("words", "picture"):
+            getattr(library, f"golden_{name}").restype = ctypes.c_void_p
+        super().__init__(
+            lambda name, *arguments: getattr(library, name)(*map(int, arguments)),
+            ctypes.string_at,
+            lambda address, data: ctypes.memmove(address, data, len(data)),
+        )

@@ -78,17 +78,6 @@ MODELS = (
 )
 
 
-def described(config: Configuration) -> dict[str, int]:
-    """Return the facts about a design that the page needs."""
-    screen = config.screen_geometry
-    return {
-        "engine": config.facts.code,
-        **{name: int(getattr(config, name)) for name in LOOKS},
-        **{name: getattr(config, name) for name in ("rectangles", "reflections", "fraction_bits")},
-        **{name: getattr(screen, name) for name in ("columns", "rows", "horizon_row", "scale", "doubling")},
-    }
-
-
 def packed(contents: bytes) -> str:
     """Compress and encode bytes as text for a script."""
     return base64.b64encode(gzip.compress(contents, 9, mtime=0)).decode()
@@ -96,9 +85,15 @@ def packed(contents: bytes) -> str:
 
 def _build(model: Model, build: Path) -> tuple[bytes, dict[str, Any]]:
     """Build a model: return its WebAssembly, and the facts that the page needs about it."""
-    config = model.configuration
+    config, screen = model.configuration, model.configuration.screen_geometry
     wasm = machine_wasm(config, processor=model.processor, taps=model.taps, build=build).read_bytes()
-    return wasm, described(config) | ({"taps": tap_facts(config)} if model.taps else {})
+    return wasm, {
+        "engine": config.facts.code,
+        **{name: int(getattr(config, name)) for name in LOOKS},
+        **{name: getattr(config, name) for name in ("rectangles", "reflections", "fraction_bits")},
+        **{name: getattr(screen, name) for name in ("columns", "rows", "horizon_row", "scale", "doubling")},
+        **({"taps": tap_facts(config)} if model.taps else {}),
+    }
 
 
 def scene_schema() -> dict[str, object]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import importlib.metadata
 import sys
-from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -35,44 +34,6 @@ WASI = "wasm32-wasi"
 FREESTANDING = "wasm32-freestanding"
 """Target without libraries, which imports nothing."""
 
-_LINKED = {WASI: ("-mexec-model=reactor",), FREESTANDING: ("-nostdlib", "-Wl,--no-entry")}
-"""Flags by target, for a program without `main` whose functions are called one by one."""
-
-
-def compile_wasm(
-    name: str,
-    sources: Sequence[Path],
-    target: str = WASI,
-    *,
-    headers: Sequence[Path] = (),
-    flags: Sequence[str] = (),
-    exports: Sequence[str] = (),
-    build: Path = BUILD,
-) -> Path:
-    """Compile and link a program, unless it is already compiled.
-
-    Args:
-        name: name of the program, for messages and file names.
-        sources: C or C++ sources.
-        target: `WASI` or `FREESTANDING`.
-        headers: files that the sources include and that may change.
-        flags: further flags for the compiler and the linker.
-        exports: functions that the page calls, in addition to those that the sources export themselves.
-        build: directory that holds `model/`.
-
-    Returns:
-        The file, `<name>.wasm`.
-
-    Raises:
-        UserError: the compiler is missing, or rejected the sources.
-    """
-    arguments = (*flags, *(f"-Wl,--export={function}" for function in exports))
-    files = [source.resolve() for source in sources]
-    with made(models(build), f"{name}-{target}", [*sources, *headers], (_compiler(), arguments)) as (place, fresh):
-        if fresh:
-            _link(place.resolve(), name, target, (*arguments, *files))
-    return place.resolve() / f"{name}.wasm"
-
 
 def _compiler() -> str:
     """Return the compiler's version.
@@ -85,9 +46,10 @@ def _compiler() -> str:
     return importlib.metadata.version("ziglang")
 
 
-def _link(directory: Path, name: str, target: str, arguments: Sequence[str | Path]) -> None:
+def _link(directory: Path, name: str, target: str, *arguments: str | Path) -> None:
+    """Compile and link a program without `main`, whose functions the page calls, to `<name>.wasm`."""
     command = [
-        sys.executable, "-m", "ziglang", "c++", "-target", target, *_LINKED[target], "-O3", "-s", *map(str, arguments),
+        sys.executable, "-m", "ziglang", "c++", "-target", target, "-O3", "-s", *map(str, arguments),
         "-o", f"{name}.wasm",
     ]  # fmt: skip
     done = run_program(command, directory, TIMEOUT)
@@ -124,15 +86,25 @@ def machine_wasm(config: Configuration, *, processor: bool = False, taps: bool =
             library = library_sources(tool)
             includes = (directory, HERE, MACHINE_HEADER.parent, SOFTWARE, library, library / "vltstd")
             _link(
-                directory, TOP, WASI,
+                directory, TOP, WASI, "-mexec-model=reactor",
                 # The driver is C, which allows narrowing conversions.
-                ("-std=gnu++20", "-Wno-c++11-narrowing", "-fno-exceptions", *VERILATED_DEFINITIONS, *design.defines,
-                 *defines, *(f"-I{path}" for path in includes), "-include", HERE / "bus.h", "-include", HERE / "shim.h",
-                 "-include", SIGNS, "-x", "c++", "all.cc", DRIVER),
+                "-std=gnu++20", "-Wno-c++11-narrowing", "-fno-exceptions", *VERILATED_DEFINITIONS, *design.defines,
+                *defines, *(f"-I{path}" for path in includes), "-include", HERE / "bus.h", "-include", HERE / "shim.h",
+                "-include", SIGNS, "-x", "c++", "all.cc", DRIVER,
             )  # fmt: skip
     return directory / f"{TOP}.wasm"
 
 
 def golden_wasm(build: Path = BUILD) -> Path:
-    """Compile the golden check, `golden.cpp`, which imports nothing; raises the errors of `compile_wasm`."""
-    return compile_wasm("golden", [GOLDEN], FREESTANDING, headers=DRIVER_HEADERS, flags=GOLDEN_FLAGS, build=build)
+    """Compile the golden check, `golden.cpp`, which imports nothing, unless it is already compiled.
+
+    Raises:
+        UserError: the compiler is missing, or rejected the source.
+    """
+    flags = ("-nostdlib", "-Wl,--no-entry", *GOLDEN_FLAGS)
+    sources, made_with = [GOLDEN, *DRIVER_HEADERS], (_compiler(), flags)
+    with made(models(build), f"golden-{FREESTANDING}", sources, made_with) as (place, fresh):
+        directory = place.resolve()
+        if fresh:
+            _link(directory, "golden", FREESTANDING, *flags, GOLDEN)
+    return directory / "golden.wasm"

@@ -123,7 +123,7 @@ class BeamProbes(Description):
         passes = config.reflections + 1
         self.starts = [beam.ENTRY_LATENCY + number * beam.pass_latency(config) for number in range(passes)]
 
-    def named(self, signal: str, place: Place, ray: Ray) -> str:
+    def named(self, signal: str, place: Place) -> str:
         """Return the full name of a signal in the instances of a place."""
         config, bounce, rectangle = self.config, place.bounce, place.rectangle or 0
         passes, count = len(self.starts), config.rectangles

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from raycaster.configuration import Configuration
 from raycaster.debug.probes import AXES, fields
 from raycaster.debug.probes.ray import Place, Probe, Ray, Value
 from raycaster.debug.probes.units import SIGNS, UnitProbes
@@ -72,8 +71,7 @@ def shadow_slope(ray: Ray, place: Place) -> Sequence[Value] | None:
 class ExactProbes(UnitProbes):
     """The exact engine's description; see `raycaster.debug.probes.ray.Description`."""
 
-    def __init__(self, config: Configuration, unit: int):
-        super().__init__(config, unit, "exact_control_i", "exact_unit")
+    modules = ("exact_control", "exact_unit")
 
     @property
     def probes(self) -> list[Probe]:

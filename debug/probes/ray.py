@@ -188,7 +188,7 @@ class Description:
         """List the signals that `events` reads."""
         raise NotImplementedError
 
-    def named(self, signal: str, place: Place, ray: Ray) -> str:
+    def named(self, signal: str, place: Place) -> str:
         """Return the full name of a probe's signal at a place."""
         return signal
 
@@ -199,7 +199,7 @@ class Description:
         for probe in self.probes:
             for number, signal in enumerate(probe.signals):
                 kind = ":hex" if probe.is_colour(number) else ":signed" if probe.is_signed(number) else ""
-                values.append(self.named(signal, place, ray) + kind)
+                values.append(self.named(signal, place) + kind)
         listed: dict[str, tuple[str, str]] = {}
         for group, signals in {
             "video": [f"{self.video}.{name}" for name in VIDEO_SIGNALS],
@@ -374,7 +374,7 @@ def read(waves: Waves, description: Description, ray: Ray) -> list[Reading]:
                 continue
             golden, cycle = tuple(probe.golden(ray, event.place) or ()), event.cycle + probe.late
             if any(value is not None for value in golden) and cycle < len(samples.times_ns):
-                names = tuple(description.named(signal, event.place, ray) for signal in probe.signals)
+                names = tuple(description.named(signal, event.place) for signal in probe.signals)
                 found.append((replace(probe, signals=names), event.place, cycle, golden))
     readings = []
     happened = {(event.kind, event.place) for event in events}

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from raycaster.configuration import CHANNEL_BITS, Configuration
+from raycaster.configuration import CHANNEL_BITS
 from raycaster.debug.probes import AXES, fields
 from raycaster.debug.probes.ray import Number, Place, Probe, Ray, Read, Value, packed
 from raycaster.debug.probes.units import RECT_FIELDS, SIGNS, UnitProbes
@@ -101,10 +101,8 @@ def true_inside(ray: Ray, place: Place) -> Sequence[Number]:
 class SeedProbes(UnitProbes):
     """The seed engine's description; see `raycaster.debug.probes.ray.Description`."""
 
+    modules = ("ray_control", "ray_unit")
     steps: Mapping[str, str] = {"load": "load_divider", "store": "store_quotient", "write": "write_z_buf"}
-
-    def __init__(self, config: Configuration, unit: int):
-        super().__init__(config, unit, "ray_control_i", "ray_unit")
 
     def expected(self, ray: Ray) -> Iterable[tuple[str, Place]]:
         """List the events that must happen; with culling, a rectangle that is not hit may end before its verdict."""

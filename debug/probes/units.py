@@ -57,24 +57,22 @@ def shown_events(samples: Samples, ray: Ray, video: str, after: int) -> list[Eve
 
 
 class UnitProbes(Description):
-    """The part of a description that does not depend on how a unit computes."""
+    """The part of a description that does not depend on how a unit computes.
+
+    Attributes:
+        modules: names of the control's module and of a unit's.
+        steps: steps of the control for each tested rectangle, in order, by kind of event.
+    """
 
     video = VIDEO
+    modules: tuple[str, str]
     steps: Mapping[str, str] = {"write": "write_z_buf"}
-    """Steps of the control for each tested rectangle, in order, by kind of event."""
 
-    def __init__(self, config: Configuration, unit: int, control: str, unit_module: str):
-        """Name the signals.
-
-        Args:
-            config: the design.
-            unit: the unit that computes the pixel.
-            control: the control's instance.
-            unit_module: the name of the unit's module.
-        """
+    def __init__(self, config: Configuration, unit: int):
         self.config = config
+        control_module, unit_module = self.modules
         self.caster = f"{RENDERER}.ray_caster_i"
-        self.control = f"{self.caster}.{control}"
+        self.control = f"{self.caster}.{control_module}_i"
         self.sequencer = f"{self.control}.ray_sequencer_i"
         self.unit = f"{self.caster}.{numbered(unit_module, unit, config.units)}"
         self.buffer = f"{RENDERER}.{numbered('line_buffer', unit, config.units)}"

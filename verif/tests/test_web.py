@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from contextlib import contextmanager
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -67,26 +66,12 @@ def packaged(name: str) -> Scene:
     return load_scene(packaged_scenes()[name])
 
 
-def assert_tour(page, model: str, name: str, count: int, screen: Screen) -> None:
-    """Assert that a model draws golden frames, from a scene's camera and on a walk from there with a full turn."""
-    scene = packaged(name)
-    x, y, z = scene.camera.position
-    cameras = [scene.camera]
-    for step in range(1, count):
-        place, yaw = (min(511, x + 2 * step), max(0, y - step), z), scene.camera.yaw + 360 / count * step
-        pitch = scene.camera.pitch + step % 7
-        cameras.append(Camera(position=place, yaw=math.remainder(yaw, 360), pitch=pitch, roll=scene.camera.roll))
-    expected = [golden_hash(scene, camera, screen) for camera in cameras]
-    assert len(set(expected)) > count // 2
-    views = [{"position": camera.position, "basis": camera.basis} for camera in cameras[1:]]
-    assert page.evaluate(TOUR, [model, packaged_scenes()[name].read_text(), views]) == expected, name
-
-
 @pytest.fixture(scope="module")
-def whole_site(tmp_path_factory) -> tuple[Path, int]:
-    """Write the page with all models; return its folder and size."""
+def whole_site(tmp_path_factory) -> Path:
+    """Write the page with all models."""
     output = tmp_path_factory.mktemp("site") / "web"
-    return output, write_site(output, BUILD, Console(quiet=True), test=True)
+    write_site(output, BUILD, Console(quiet=True), test=True)
+    return output
 
 
 def opened(page, address: str) -> dict:
@@ -103,23 +88,14 @@ def walk(page, site):
     return page
 
 
-@contextmanager
-def served(site: Path):
-    """Serve a folder; yield its address."""
-    handler = partial(SimpleHTTPRequestHandler, directory=site)
-    handler.log_message = lambda *_: None
-    server = ThreadingHTTPServer(("127.0.0.1", 0), handler)
-    Thread(target=server.serve_forever, daemon=True).start()
-    yield f"http://127.0.0.1:{server.server_port}"
-    server.shutdown()
-
-
 def test_draws_from_a_disk_and_from_a_server(page, site):
-    with served(site) as address:
-        for place in (site.as_uri(), address):
+    with ThreadingHTTPServer(("127.0.0.1", 0), partial(SimpleHTTPRequestHandler, directory=site)) as server:
+        Thread(target=server.serve_forever, daemon=True).start()
+        for place in (site.as_uri(), f"http://127.0.0.1:{server.server_port}"):
             state = opened(page, f"{place}/index.html")
             assert (state["hash"], state["wrong"]) == (golden_hash(packaged("mirror_room")), 0)
             assert f"0 wrong pixels of {PIXELS}" in page.text_content("#walk-status")
+        server.shutdown()
     assert page.evaluate("Object.keys(RayCaster.scenes)") == list(packaged_scenes())
 
 
@@ -160,24 +136,35 @@ def test_a_planted_pixel_is_counted_and_marked(page, site):
     page.wait_for_function(f"[...{pixel}].join() === '255,0,255,255'")
 
 
-@pytest.mark.parametrize(("model", "name", "screen"), [("walk", "boxes", WALK), ("exact", "shadow_hall", TINY)])
-def test_turning_cameras_and_a_light(walk, model, name, screen):
-    assert_tour(walk, model, name, 5, screen)
+TOURS = [("walk", "boxes", 5, WALK), ("exact", "shadow_hall", 5, TINY)]
+TOURS += [("walk-looks", name, 20, VGA) for name in ("checkered_hall", "kaleidoscope", "periscope", "pool", "rooftops")]
+"""Models with their scenes, frames and screens; the last five scenes together need every look of a design."""
+
+
+@pytest.mark.slow_sets("walk-looks")
+@pytest.mark.parametrize(("model", "name", "count", "screen"), TOURS)
+def test_a_tour(page, request, model, name, count, screen):
+    """A model draws golden frames, from a scene's camera and on a walk from there with a full turn."""
+    site = request.getfixturevalue("site" if model in PAGE_MODELS else "whole_site")
+    opened(page, (site / "index.html").as_uri())
+    scene = packaged(name)
+    x, y, z = scene.camera.position
+    cameras = [scene.camera]
+    for step in range(1, count):
+        place, yaw = (min(511, x + 2 * step), max(0, y - step), z), scene.camera.yaw + 360 / count * step
+        pitch = scene.camera.pitch + step % 7
+        cameras.append(Camera(position=place, yaw=math.remainder(yaw, 360), pitch=pitch, roll=scene.camera.roll))
+    expected = [golden_hash(scene, camera, screen) for camera in cameras]
+    assert len(set(expected)) > count // 2
+    views = [{"position": camera.position, "basis": camera.basis} for camera in cameras[1:]]
+    assert page.evaluate(TOUR, [model, packaged_scenes()[name].read_text(), views]) == expected
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["checkered_hall", "kaleidoscope", "periscope", "pool", "rooftops"])
-def test_a_hundred_frames(page, whole_site, name):
-    """Five scenes together need every look that the design can have."""
-    opened(page, (whole_site[0] / "index.html").as_uri())
-    assert_tour(page, "walk-looks", name, 20, VGA)
-
-
-@pytest.mark.slow
-def test_the_size(whole_site):
-    site, size = whole_site
+def test_the_size(tmp_path):
+    site = tmp_path / "web"
+    assert write_site(site, BUILD, Console(quiet=True)) <= MOST_BYTES
     assert {path.stem for path in (site / "models").iterdir()} == {model.name for model in MODELS} | {"golden"}
-    assert size <= MOST_BYTES
 
 
 @pytest.mark.slow
@@ -188,7 +175,7 @@ def test_the_game_is_the_native_one(page, whole_site):
     with Machine(build_machine(config, processor=True), config, program) as machine:
         # The machine has already completed its first frame.
         expected = [picture_hash(machine.frame(buttons).picture) for buttons in held]
-    page.goto((whole_site[0] / "index.html").as_uri() + "#game")
+    page.goto((whole_site / "index.html").as_uri() + "#game")
     page.wait_for_function("RayCaster.state.game?.frames > 2 && RayCaster.state.game.wrong === 0")
     assert "engine beam" in page.text_content("#game-text")
     assert page.evaluate(GAME, held) == expected
@@ -208,8 +195,7 @@ def engines(page, scene: str, fraction_bits: int) -> dict:
 @pytest.mark.parametrize(("which", "screen", "fraction_bits"), [("site", TINY, 0), ("whole_site", VGA, 4)])
 def test_the_engines_side_by_side(page, request, which, screen, fraction_bits):
     """The exact engine draws the shadows, and afterwards a scene without a light; the seed engine refuses the first."""
-    site = request.getfixturevalue(which)
-    page.goto((site if which == "site" else site[0]).joinpath("index.html").as_uri() + "#engines")
+    page.goto((request.getfixturevalue(which) / "index.html").as_uri() + "#engines")
     page_state(page, "engines")
     reason = SEED.lacks["light"].replace("the seed engine", "it")
     state = engines(page, "evening", fraction_bits)
@@ -239,7 +225,7 @@ def test_frames_are_timed(page, whole_site, monkeypatch):
     """Frame times in the browser and natively are positive numbers of milliseconds, and the table has them."""
     monkeypatch.setattr(speed, "SCENES", ("boxes",))
     monkeypatch.setattr(speed, "FRAMES", 2)
-    [row] = speed.speed(page, whole_site[0], MODELS[0].name, MODELS[0].configuration, BUILD, Console(quiet=True))
+    [row] = speed.speed(page, whole_site, MODELS[0].name, MODELS[0].configuration, BUILD, Console(quiet=True))
     assert row["scene"] == "boxes"
     assert min(value for name, value in row.items() if name != "scene") > 0
     assert speed.speed_table([row]).row_count == 1

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Compare the page's own check, in WebAssembly, with the golden models."""
+"""Compare the page's own check, in WebAssembly, with the golden models; errors of the page's tools."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from wasmtime import Instance, Module, Store
 
 from raycaster.configuration import LOOKS, Configuration, configure
 from raycaster.engines import BEAM, EXACT
+from raycaster.errors import UserError
 from raycaster.golden.catalogue import catalogue
 from raycaster.golden.engines import model_of
 from raycaster.golden.picture import shown
@@ -22,13 +24,19 @@ from raycaster.registers import register_map
 from raycaster.scene import load_scene, packaged_scenes
 from raycaster.screens import SCREENS, Screen
 from raycaster.sim.register_model import COMMIT_CLOCKS, LiveScene, SceneFollower
+from raycaster.sim.simulator import MODELS_VARIABLE
 from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.seeds import seed
+from raycaster.web import wasm
+from raycaster.web.browser import browser_page
 from raycaster.web.golden import Golden
 from raycaster.web.wasm import golden_wasm
 
 LIT, DARK_SIDE = -1, -2
 """Values of `Bounce::shadow`, besides the rectangle that shades."""
+
+BOUNCE = ("winner", "numerator", "denominator", "x", "y", "z", "colour", "quarters", "shadow")
+"""Members of `Bounce`."""
 
 QUOTIENTS = [(bits, rounding) for bits in (0, 3, 8) for rounding in ("truncate", "nearest")]
 ENGINES = [
@@ -57,28 +65,27 @@ def design(rectangles: int = 12, **options: object) -> Configuration:
     return replace(small, rectangles=rectangles, reflections=2)
 
 
-class Wasm(Golden):
-    """The program as the page runs it; it imports nothing."""
-
-    def __init__(self):
-        self._store = Store()
-        module = Module.from_file(self._store.engine, str(golden_wasm(BUILD)))
-        assert list(module.imports) == []
-        self._exports = Instance(self._store, module, []).exports(self._store)
-
-    def call(self, name: str, *arguments: int) -> int:
-        return self._exports[name](self._store, *map(int, arguments))
-
-    def read(self, address: int, size: int) -> bytes:
-        return bytes(self._exports["memory"].read(self._store, address, address + size))
-
-    def write(self, address: int, data: bytes) -> None:
-        self._exports["memory"].write(self._store, data, address)
-
-
 @pytest.fixture(scope="module")
 def golden() -> Golden:
-    return Wasm()
+    """The program as the page runs it; it imports nothing."""
+    store = Store()
+    module = Module.from_file(store.engine, str(golden_wasm(BUILD)))
+    assert list(module.imports) == []
+    exports = Instance(store, module, []).exports(store)
+    memory = exports["memory"]
+    return Golden(
+        lambda name, *arguments: exports[name](store, *map(int, arguments)),
+        lambda address, size: bytes(memory.read(store, address, address + size)),
+        lambda address, data: memory.write(store, data, address),
+    )
+
+
+def bounces(golden: Golden, column: int, row: int) -> list[dict[str, int]]:
+    """Return the bounces of a pixel's ray, by the names of `Bounce`."""
+    count = golden.call("golden_ray", column, row)
+    data = golden.read(golden.call("golden_bounces"), 8 * len(BOUNCE) * count)
+    rows = np.frombuffer(data, "<i8").reshape(-1, len(BOUNCE)).tolist()
+    return [dict(zip(BOUNCE, one, strict=True)) for one in rows]
 
 
 def random_words(rng: np.random.Generator, config: Configuration) -> list[tuple[int, int]]:
@@ -103,20 +110,14 @@ def live(config: Configuration, words: Iterable[tuple[int, int]]) -> LiveScene:
     return follower.live
 
 
-def expected(config: Configuration, screen: Screen, scene: LiveScene) -> np.ndarray:
-    """Return the expected picture at the pins, with one pixel per ray."""
-    picture = scene.picture(model_of(config), screen)
-    doubling = config.screen_geometry.doubling
-    return shown(picture, config)[::doubling, ::doubling]
-
-
 def assert_drawn(
     golden: Golden, config: Configuration, words: list[tuple[int, int]], context: str, screen: Screen | None = None
 ) -> np.ndarray:
-    """Return the picture drawn from these words; assert that it matches the golden model."""
+    """Return the picture drawn from these words, with one pixel per ray; assert that it matches the golden model."""
     golden.load(words)
-    drawn = golden.draw(config, screen)
-    wrong = np.argwhere((drawn != expected(config, screen or config.screen_geometry, live(config, words))).any(axis=-1))
+    drawn, doubling = golden.draw(config, screen), config.screen_geometry.doubling
+    right = live(config, words).picture(model_of(config), screen or config.screen_geometry)
+    wrong = np.argwhere((drawn != shown(right, config)[::doubling, ::doubling]).any(axis=-1))
     assert not len(wrong), f"{len(wrong)} wrong pixels, the first at row, column {wrong[0]}: {config.name}, {context}"
     return drawn
 
@@ -163,7 +164,7 @@ def test_does_not_run(golden):
         words[control.address] &= ~mask
         golden.load(words.items())
         assert golden.draw(config).any() == runs
-        assert bool(len(golden.bounces(0, 0))) == runs
+        assert bool(bounces(golden, 0, 0)) == runs
 
 
 def true_bounces(config: Configuration, scene: LiveScene, slopes: np.ndarray) -> list[list[dict[str, object]]]:
@@ -189,10 +190,6 @@ def true_bounces(config: Configuration, scene: LiveScene, slopes: np.ndarray) ->
     return found
 
 
-NAMES = ("winner", "numerator", "denominator", "x", "y", "z", "colour", "quarters", "shadow")
-"""Members of `Bounce`."""
-
-
 @of_each_engine
 def test_explains_a_pixel(golden, options):
     rng = np.random.default_rng([seed(), 2])
@@ -210,11 +207,45 @@ def test_explains_a_pixel(golden, options):
             # The basis is a factor even if it is not turned, since t is relative to these slopes.
             slopes = slopes @ np.array(scene.basis)
         for (row, column), expected in zip(pixels.tolist(), true_bounces(config, scene, slopes), strict=True):
-            bounces = [dict(zip(NAMES, one, strict=True)) for one in golden.bounces(column, row).tolist()]
-            known = [{name: bounce[name] for name in one} for bounce, one in zip(bounces, expected, strict=True)]
+            found = zip(bounces(golden, column, row), expected, strict=True)
+            known = [{name: bounce[name] for name in one} for bounce, one in found]
             assert known == expected, f"world {number}, row {row}, column {column}"
             hits = [one["shadow"] for one in expected if one["winner"] >= 0]
             lengths |= {len(hits), len(expected)}
             shadows |= set(hits)
     assert lengths == {0, 1, 2, 3}
     assert not config.light or {LIT, DARK_SIDE} < shadows
+
+
+def test_compiles_once_without_errors(tmp_path, monkeypatch):
+    source = tmp_path / "golden.cpp"
+    monkeypatch.setattr(wasm, "GOLDEN", source)
+    monkeypatch.delenv(MODELS_VARIABLE)
+    source.write_text("int one = two;\n")
+    for _ in range(2):  # a failure does not count as compiled
+        with pytest.raises(UserError, match=r"^the compiler failed on golden; its log is \S+\.log$") as refused:
+            golden_wasm(tmp_path)
+        assert "'two'" in Path(str(refused.value).rpartition(" ")[2]).read_text()
+    source.write_text("int one = 1;\n")
+    compiled = golden_wasm(tmp_path)
+    before = compiled.stat().st_mtime_ns
+    assert (golden_wasm(tmp_path), compiled.stat().st_mtime_ns) == (compiled, before)
+    others = []
+    for name, value in (("GOLDEN_FLAGS", wasm.GOLDEN_FLAGS[1:]), ("DRIVER_HEADERS", [])):
+        monkeypatch.setattr(wasm, name, value)
+        others.append(golden_wasm(tmp_path))
+    assert len({compiled, *others}) == 3, "it is compiled again for other flags and headers"
+    monkeypatch.setattr(wasm, "find_spec", lambda name: None)
+    with pytest.raises(UserError, match=r"^ziglang is missing; it comes with the extra play: .*$"):
+        golden_wasm(tmp_path)
+
+
+def test_a_script_that_fails_is_noticed():
+    with pytest.raises(AssertionError, match="nowhere is not defined"), browser_page() as page:
+        page.set_content("<script>nowhere()</script>")
+
+
+def test_without_a_browser(monkeypatch):
+    monkeypatch.setattr("raycaster.web.browser.find", lambda tool: None)
+    with pytest.raises(UserError, match=r"^Chromium is missing[;,] .*$"), browser_page():
+        pass
