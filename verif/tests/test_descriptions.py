@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Descriptions of the design for other tools, read by third-party readers; `test_take_home.py` checks the ports."""
+"""Descriptions of the design for other tools and for software, most of them read by third-party readers.
+
+`test_take_home.py` checks the ports; `test_driver.py` compiles the driver with the header.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ import re
 from pathlib import Path
 
 import pytest
+from conftest import ROOT
 from ipyxact.ipyxact import Component
 from peakrdl_ipxact import IPXACTImporter
 from systemrdl import RDLCompiler
@@ -19,7 +23,8 @@ from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM, componen
 from raycaster.convert.take_home import TOP
 from raycaster.convert.write import write_verilog
 from raycaster.hdl.hierarchy import Port
-from raycaster.registers import address_bits, register_map
+from raycaster.register_views import HEADER, SOFTWARE, write_header
+from raycaster.registers import address_bits, compile_registers, register_map
 
 BUS_PORTS = {
     "axi4lite": "AWADDR AWVALID AWREADY WDATA WSTRB WVALID WREADY BRESP BVALID BREADY "
@@ -42,7 +47,7 @@ def written(request, tmp_path_factory) -> tuple[str, Path]:
 
 
 def test_registers_of_ip_xact(written):
-    """The component has every offset, and the bits and access of each field."""
+    """The component has every offset, and the bits and access of each field; the C header has the table's length."""
     bus, path = written
     compiler = RDLCompiler()
     IPXACTImporter(compiler).import_file(str(path))
@@ -63,6 +68,7 @@ def test_registers_of_ip_xact(written):
     assert f"<spirit:range>{4 << address_bits(table):#x}</spirit:range>" in text
     pending = text[text.index("<spirit:name>irq_pending<") :]
     assert "<spirit:modifiedWriteValue>oneToClear<" in pending[: pending.index("</spirit:register>")]
+    assert f"rectangle[{table}];" in (path.parent / HEADER).read_text()
 
 
 def test_interfaces_of_ip_xact(written):
@@ -122,3 +128,17 @@ def test_a_nios_system(processor, tmp_path):
 def test_a_nios_system_says_what_it_needs(settings, complaint, tmp_path):
     with pytest.raises(AssertionError, match=f"^{complaint}"):
         tcl_calls(tmp_path, NIOS_SYSTEM, settings)
+
+
+def test_the_header_has_not_drifted(tmp_path):
+    write_header(12, tmp_path / HEADER)
+    assert (ROOT / SOFTWARE / HEADER).read_text() == (tmp_path / HEADER).read_text(), "outdated; run make registers"
+
+
+def test_each_register_and_field_has_a_text():
+    """All texts differ, except those of a rectangle's two corners, which share a type."""
+    registers = [node for node in compile_registers(12).descendants() if isinstance(node, RegNode)]
+    texts = {node.get_path(): node.get_property("desc") for node in registers}
+    assert all(texts.values())
+    assert len(set(texts.values())) == len(texts) - 1
+    assert all(field.get_property("desc") for node in registers for field in node.fields())

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Examples of custom designs work as documented: converted as a user would, each shows the scene."""
 
-import os
-import subprocess
 import sys
 from dataclasses import replace
 from importlib import import_module
@@ -10,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT, TINY
+from conftest import ROOT, TINY, run_tool
 
 from raycaster.convert.write import write_verilog
 from raycaster.golden.seed_engine import SeedModel
@@ -40,14 +38,11 @@ def simulated(directory: Path, design: str, ports: str, files: list[Path], *opti
 
     Frames are counted from 1 on, as the first one begins with a vertical sync.
     """
-    bench = BENCH
-    for name, value in {"DESIGN": design, "PORTS": ports, "FRAME": str(frame)}.items():
-        bench = bench.replace(name, value)
+    bench = BENCH.replace("DESIGN", design).replace("PORTS", ports).replace("FRAME", str(frame))
     (directory / "bench.v").write_text(bench)
-    for command in (["iverilog", "-g2005", *options, "-o", "bench", "bench.v", *files], ["vvp", "-n", "bench"]):
-        done = subprocess.run(command, cwd=directory, capture_output=True, text=True, check=False)
-        assert (done.returncode, done.stderr) == (0, "")
-    return np.array([int(line, 16) for line in done.stdout.split()])
+    compiled = run_tool(directory, "iverilog", "-g2005", *options, "-o", "bench", "bench.v", *files)
+    assert compiled.stdout == ""
+    return np.array([int(line, 16) for line in run_tool(directory, "vvp", "-n", "bench").stdout.split()])
 
 
 @pytest.mark.parametrize(
@@ -95,10 +90,8 @@ def run_outside(directory: Path, example: str, fault: tuple[str, str] | None, *o
         text += source.read_text()
         (directory / source.name).write_text(source.read_text().replace(*fault) if fault else source.read_text())
     assert not fault or text.count(fault[0]) == 1
-    command = [sys.executable, "-m", "pytest", "-q", "-n", "0", *options]
-    environment = os.environ | {"WAVES": "1", "GUI": ""}
-    done = subprocess.run(command, cwd=directory, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == int(bool(fault)), done.stdout + done.stderr
+    done = run_tool(directory, sys.executable, "-m", "pytest", "-q", "-n", "0", *options, WAVES="1", GUI="")
+    assert done.returncode == int(bool(fault)), done.stdout
     return done.stdout
 
 

@@ -6,64 +6,15 @@ import re
 from pathlib import Path
 
 import pytest
-from hdl_blocks import converted, step
+from hdl_blocks import converted
 from myhdl import always, always_comb, block
 
 from raycaster import rtl
 from raycaster.configuration import configure
 from raycaster.convert.vocabulary import VOCABULARY
-from raycaster.hdl.signals import bit, unconnected, unsigned
+from raycaster.hdl.signals import bit
 from raycaster.rtl.common.interfaces import Place
 from raycaster.rtl.common.records import Signs
-
-
-@block
-def few_words(clk, value, kept, both, either, stepped):
-    """Connect processes that are mostly self-explanatory."""
-
-    @always(clk.posedge)
-    def keep():
-        kept.next = value
-
-    @always_comb
-    def join():
-        both.next = kept & value
-
-    # The reason for this one is not plain.
-    @always_comb
-    def choose():
-        either.next = kept | value
-
-    stepping = step(clk, value, kept, stepped, unconnected(1))
-
-    return keep, join, choose, stepping
-
-
-def test_a_process_needs_no_comment(tmp_path):
-    modules = converted(few_words(bit(), *(unsigned(4) for _ in range(5))), tmp_path)
-    _, _, body = modules["few_words"].path.read_text().partition(");\n\n")
-    assert (
-        body
-        == """always @(posedge clk) begin
-    kept <= value;
-end
-
-assign both = kept & value;
-
-// The reason for this one is not plain.
-assign either = kept | value;
-
-step step_i (
-    .clk(clk),
-    .value(value),
-    .step_by(kept),
-    .stepped(stepped),
-    .wrapped()
-);
-
-endmodule
-"""
-    )
 
 
 @block
@@ -86,13 +37,17 @@ def with_documented_ports(clk, value, slope, pair, cycles: int, config=None):
     @always(clk.posedge)
     def copy():
         pair.row.next = value + slope.dz
+
+    @always_comb
+    def join():
         pair.column_offset.next = value
 
-    return copy
+    return copy, join
 
 
-def test_ports_have_their_comments(tmp_path):
-    """Each argument's text precedes its first port, with numbers, options and Verilog names instead of Python's."""
+def test_ports_and_processes_have_their_comments(tmp_path):
+    """Each argument's text precedes its first port, with numbers, options and Verilog names instead of Python's.
+    A process needs no comment."""
     config = configure(units=32)
     top = with_documented_ports(bit(), bit(), Signs(), Place(config), 3, config)
     modules = converted(top, tmp_path, vocabulary=VOCABULARY)
@@ -114,10 +69,11 @@ module with_documented_ports (
     // row of rays, 0 at the top.
     output reg  [7:0] pair_row,
     // number of the group in its row.
-    output reg  [3:0] pair_column_offset
+    output wire [3:0] pair_column_offset
 """
     )
-    assert "// With MATERIALS=1 a row has 2 lines.\nalways @" in body
+    assert "\n\n// With MATERIALS=1 a row has 2 lines.\nalways @" in body
+    assert body.endswith("end\n\nassign pair_column_offset = value;\n\nendmodule\n")
 
 
 @pytest.mark.parametrize(

@@ -9,27 +9,19 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from conftest import ROOT
-from hdl_blocks import converted, everything, everything_arguments, swap
+from hdl_blocks import converted, everything, everything_arguments
 from myhdl import enum
 from test_project import MAY_IMPORT
 
 from raycaster.hdl import internals
-from raycaster.hdl.elaboration import _DEEPEST, _Frame, elaboration
+from raycaster.hdl.elaboration import _Frame, elaboration
 from raycaster.hdl.signals import bit
 
 
 def test_elaboration_leaves_nothing_behind():
-    before = inspect.stack
-    slow = [(frame[0], frame[3]) for frame in inspect.stack()][:_DEEPEST]
-    lines, file = inspect.getsourcelines(swap.func), inspect.getsourcefile(swap.func)
-    known = len(internals.all_signals)
+    before, known = inspect.stack, len(internals.all_signals)
     with elaboration():
         assert inspect.stack is not before
-        # MyHDL reads these parts of a frame.
-        for quick in (inspect.stack(), inspect.getouterframes(inspect.currentframe())):
-            assert [(getattr(frame[0], "_frame", frame[0]), frame[3]) for frame in quick] == slow
-        for _ in range(2):
-            assert (inspect.getsourcelines(swap.func), inspect.getsourcefile(swap.func)) == (lines, file)
         signal = bit()
         assert internals.all_signals[-1] is signal
     assert inspect.stack is before
@@ -76,7 +68,8 @@ def test_two_threads_convert_as_one_after_the_other(tmp_path):
 
 
 def test_myhdls_private_parts_are_touched_in_one_file():
-    """No other file imports a private name of MyHDL, and none in `hdl` reads another object's private attribute."""
+    """No other file imports a private name of MyHDL, and none in `hdl` reads another object's private attribute.
+    The version is pinned."""
     found = set()
     for folder in MAY_IMPORT:
         for path in (ROOT / folder).rglob("*.py"):
@@ -86,11 +79,7 @@ def test_myhdls_private_parts_are_touched_in_one_file():
             if re.search(private, path.read_text(), re.M):
                 found.add(path.relative_to(ROOT).as_posix())
     assert found == {"hdl/internals.py"}
-
-
-def test_myhdl_is_the_version_that_this_was_written_for():
-    pins = [line for line in importlib.metadata.requires("raycaster") if line.startswith("myhdl")]
-    assert pins == [f"myhdl=={importlib.metadata.version('myhdl')}"]
+    assert f"myhdl=={importlib.metadata.version('myhdl')}" in importlib.metadata.requires("raycaster")
 
 
 def test_states_have_names_for_a_time():

@@ -8,9 +8,9 @@ import importlib.metadata
 import inspect
 import re
 import runpy
+import shutil
 import subprocess
 import sys
-import tarfile
 from collections.abc import Callable
 from functools import cache, partial
 from pathlib import Path
@@ -25,8 +25,6 @@ from raycaster.hdl.errors import UserError
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.signals import bit, signed, unsigned
 
-CYCLES = 200
-
 
 @pytest.fixture(scope="module")
 def examples(tmp_path_factory) -> Path:
@@ -38,9 +36,7 @@ def examples(tmp_path_factory) -> Path:
     if done.returncode:
         pytest.skip(f"no source of {package}: {done.stderr[-200:]}")
     [archive] = directory.glob("*.tar.gz")
-    # Python 3.11.4 brought the filter, which 3.14 has by default.
-    with tarfile.open(archive) as source:
-        source.extractall(directory, **({"filter": "data"} if hasattr(tarfile, "data_filter") else {}))
+    shutil.unpack_archive(archive, directory)
     return next(directory.glob("*/example"))
 
 
@@ -96,35 +92,16 @@ DESIGNS = {
     "arith_lib/PrefixAnd.py": ("PrefixAnd", {"width": lambda: 8, "speed": lambda: 0, **words("PI:8 PO:8")}),
     "cookbook/bitonic/bitonic.py": ("Array8Sorter", words(" ".join(f"{kind}{n}:4" for kind in "az" for n in range(8)))),
 }
-REFUSED = {
-    "manual/custom.py": "inc_comb: verilog_code has no ports",
-    "manual/fsm2.py": "Unsupported yield statement",
-    "rs232/rs232_tx.py": "Local variable may be referenced before assignment: reduce",
-    "rs232/rs232_rx.py": "Not supported: true division",
-    "arith_lib/LeadZeroDet.py": "intbv object should have a bit width",
-    "arith_lib/PrefixAnd.py": "PrefixAnd0: subblock slowPrefix should be encapsulated in a block decorator",
+OUTCOMES = {
+    file: outcome
+    for outcome, files in re.findall(r"^\| (equal.*?|refused: .*?) \| (.*) \|$", PAGE.read_text(), re.M)
+    for file in re.findall("`(.*?)`", files)
 }
-"""Beginnings of the reasons for which a design is refused, by its file."""
-
-EDGE_AT_START = {"uart_tx/uart_tx.py"}
-"""Designs with an edge of the reset at the start in Verilog, where signals begin unknown, but not in MyHDL."""
-
-UNKNOWN = {"cookbook/johnson/jc2.py", "cookbook/johnson/jc2_alt.py"}
-"""Designs without a reset, whose Verilog stays unknown, as MyHDL's own does by default."""
+"""Outcome of each example, by its file, from the manual's table: equal, perhaps with a restriction, or refused."""
 
 
-def outcome(file: str) -> str:
-    """Return the outcome as in the manual's table."""
-    if file in REFUSED:
-        return f"refused: {REFUSED[file]}"
-    return "equal, but unknown, as the design has no reset" if file in UNKNOWN else "equal"
-
-
-def test_the_manual_has_the_outcome_of_each_example():
-    page = PAGE.read_text()
-    for said in dict.fromkeys(map(outcome, DESIGNS)):
-        files = dict.fromkeys(f"`{file.partition(':')[0]}`" for file in DESIGNS if outcome(file) == said)
-        assert f"| {said} | {', '.join(files)} |\n" in page
+def test_the_manual_has_each_example():
+    assert {*OUTCOMES} == {file.partition(":")[0] for file in DESIGNS}
 
 
 @cache
@@ -146,20 +123,22 @@ def loaded(path: Path) -> dict:
 def test_an_example_converts_as_myhdl_does(file, examples, tmp_path, random, monkeypatch):
     monkeypatch.chdir(tmp_path)  # some examples convert themselves when they are imported
     name, makers = DESIGNS[file]
-    names = loaded(examples / file.partition(":")[0])
+    path, _, _ = file.partition(":")
+    outcome, names = OUTCOMES[path], loaded(examples / path)
     function = names[name] if hasattr(names[name], "func") else block(names[name])
 
     def arguments() -> dict:
         states = names.get("t_state") or names.get("t_State")
         return {port: make() if make else Signal(states.SEARCH) for port, make in makers.items()}
 
-    if file in REFUSED:
-        with pytest.raises((UserError, BlockError), match=rf"^(\S+\.py:\d+: )?{REFUSED[file]}"):
+    if outcome.startswith("refused: "):
+        reason = re.escape(outcome.removeprefix("refused: "))
+        with pytest.raises((UserError, BlockError), match=rf"^(\S+\.py:\d+: )?{reason}"):
             Leaf(function, arguments, tmp_path)
         return
     leaf = Leaf(function, arguments, tmp_path)
     stimulus = []
-    for cycle in range(CYCLES):
+    for cycle in range(200):
         inputs = {port: int(random.integers(1 << shape.width)) for port, shape in leaf.inputs.items()}
         active = name in ("StopWatch", "TimeCount", "SineComputer")
         inputs |= {port: int((cycle > 2) != active) for port in inputs if port in ("reset", "rst", "reset_n", "tx_rst")}
@@ -174,7 +153,8 @@ def test_an_example_converts_as_myhdl_does(file, examples, tmp_path, random, mon
         function(**arguments()).convert(hdl="Verilog", path=str(flat), initial_values=False)
     leaf.verilog = [flat / f"{name}.v"]
     assert leaf.run_verilog(stimulus) == modules
-    start = file in EDGE_AT_START
+    # In Verilog, where signals begin unknown, the start is an edge of this design's reset, but not in MyHDL.
+    start = name == "uart_tx"
     for seen, expected in zip(modules[start:], leaf.run_myhdl(stimulus)[start:], strict=True):
         assert all(value in (None, expected[port]) for port, value in seen.items())
-    assert any(None not in cycle.values() for cycle in modules) == (file not in UNKNOWN)
+    assert any(None not in cycle.values() for cycle in modules) == (outcome == "equal")

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Blocks whose arguments differ are modules that differ; equal ones share a module."""
 
+import pickle
+from functools import partial
 from itertools import combinations_with_replacement
 
 import numpy as np
 import pytest
-from hdl_blocks import Pair, another_inverted, inverted
-from myhdl import ResetSignal, Signal, always_comb, always_seq, block, intbv
+from hdl_blocks import Mirrored, Pair, another_inverted, chosen_part, inverted, step
+from myhdl import ResetSignal, Signal, always_seq, block, intbv
 
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.records import Interface, Record
-from raycaster.hdl.signals import Signed, bit, signed, unsigned
+from raycaster.hdl.signals import Signed, bit, signed, unconnected, unsigned
 
 
 class Mode:
@@ -30,19 +32,11 @@ class Late(Interface):
         self.value, self.amount = value, amount
 
 
-def number_of(value, amount) -> int:
-    """Return a number that depends on everything that may distinguish two arguments."""
-    if isinstance(amount, Mode):
-        return amount.number
-    if isinstance(amount, np.ndarray):
-        return int(amount[len(amount) // 2])
-    return (value.max or 0) + (len(amount) if isinstance(amount, tuple) else 2 * amount + isinstance(amount, bool))
-
-
 @block
 def offset(clk, reset, late, moved):
-    """moved = value + a number from the arguments, modulo 256."""
-    step_by, value = number_of(late.value, late.amount), late.value
+    """moved = value + a number that depends on the value's range and on the amount, modulo 256."""
+    value = late.value
+    step_by = sum(pickle.dumps((value.max, late.amount)))
 
     @always_seq(clk.posedge, reset=reset)
     def work():
@@ -51,130 +45,77 @@ def offset(clk, reset, late, moved):
     return (work,)
 
 
-@block
-def offsets(clk, reset, other_reset, late, later, first, second):
-    """Apply two offsets."""
-    one = offset(clk, reset, late, first)
-    two = offset(clk, other_reset, later, second)
-
-    return one, two
-
-
-ONE = Mode(1)
-PEAK = np.eye(1, 3000, 1500)[0]
-AMOUNTS = [(1, 1), (1, 2), (1, True), (0, False), (ONE, ONE), (ONE, Mode(2)), (PEAK, 2 * PEAK), ((0, 0), (0, 0)),
-           ((0, 0), (0, 0, 0)), ((1, 0), (True, 0)), (1, Signed(1))]  # fmt: skip
-RANGES = [lambda: unsigned(4), lambda: Signal(intbv(0, min=0, max=10)), bit, lambda: unsigned(1), lambda: signed(4)]
-PLAIN = {"amounts": (1, 1), "ranges": RANGES[:1] * 2, "initial": (0, 0), "active": (1, 1)}
-
-
-@pytest.mark.parametrize(
-    ("differing", "values", "apart"),
-    [("amounts", amounts, number not in (0, 4, 7)) for number, amounts in enumerate(AMOUNTS)]
-    + [("ranges", pair, pair[0] is not pair[1]) for pair in combinations_with_replacement(RANGES, 2)]
-    + [("initial", (3, 3), False), ("initial", (3, 5), True), ("active", (0, 0), False), ("active", (1, 0), True)],
-)
-def test_arguments_that_differ_make_modules_that_differ(differing, values, apart, tmp_path):
-    amounts, ranges, initial, active = (PLAIN | {differing: values}).values()
-
-    def arguments() -> dict:
-        resets = (ResetSignal(0, active=level, isasync=False) for level in active)
-        lates = (Late(make(), amount) for make, amount in zip(ranges, amounts, strict=True))
-        moved = (Signal(intbv(value)[8:]) for value in initial)
-        names = ("clk", "reset", "other_reset", "late", "later", "first", "second")
-        return dict(zip(names, (bit(), *resets, *lates, *moved), strict=True))
-
-    leaf = Leaf(offsets, arguments, tmp_path)
-    assert leaf.modules[-1].instances == {"offset_0": "offset", "offset_1": "offset_1" if apart else "offset"}
-    assert [module.name for module in leaf.modules] == ["offset", *["offset_1"] * apart, "offsets"]
-    stimulus = [
-        {"reset": active[0] ^ off, "other_reset": active[1] ^ off, "late_value": 1, "later_value": 1}
-        for off in (0, 1, 1)
-    ]
-    outputs = leaf.run_both(stimulus, settled=1)
-    assert tuple(outputs[1].values()) == initial
-    expected = (1 + number_of(make(), amount) for make, amount in zip(ranges, amounts, strict=True))
-    assert tuple(outputs[2].values()) == tuple(expected)
-
-
-class Mirrored(Pair):
-    """Pair that a block can recognise by its class."""
-
-
-class Halves(Record):
-    """A byte in two parts of variable width."""
-
-    def __init__(self, high: int):
-        super().__init__({"high": high, "low": 8 - high})
-
-
-@block
-def mix(left, right, mixed):
-    """Mix two ports that the conversion might confuse."""
-
-    @always_comb
-    def work():
-        mixed.next = left ^ right
-
-    return (work,)
-
-
-@block
-def chosen_part(group, part):
-    """Select the low half of a `Mirrored`, and the high half of anything else."""
-    chosen = group.low if isinstance(group, Mirrored) else group.high
-
-    @always_comb
-    def choose():
-        part.next = chosen
-
-    return (choose,)
-
-
-class Inputs(Interface):
+class Ports(Interface):
     """Arguments, of which only those that are used become ports."""
 
     def __init__(self):
-        self.value, self.other, self.pair, self.mirrored = unsigned(4), unsigned(4), Pair(), Mirrored()
-        self.halves, self.same, self.thin = Halves(4), Halves(4), Halves(2)
+        self.clk, self.flag, self.nibble, self.other = bit(), bit(), unsigned(4), unsigned(4)
+        self.narrow, self.digit, self.signed = unsigned(1), Signal(intbv(0, min=0, max=10)), signed(4)
+        self.high, self.low = (ResetSignal(0, active=level, isasync=False) for level in (1, 0))
+        self.pair, self.mirrored = Pair(), Mirrored()
+        self.halves, self.same, self.thin = (Record({"high": high, "low": 8 - high}) for high in (4, 4, 2))
+        self.first, self.second, self.third = (Signal(intbv(initial)[8:]) for initial in (3, 3, 5))
+        self.one, self.two = unsigned(4), unsigned(4)
 
 
-KINDS = {
-    "one signal at two ports": lambda x: ((mix, x.value, x.value), (mix, x.value, x.other)),
-    "classes": lambda x: ((chosen_part, x.pair), (chosen_part, x.mirrored)),
-    "layouts": lambda x: ((chosen_part, x.halves), (chosen_part, x.thin)),
-    "equal layouts": lambda x: ((chosen_part, x.halves), (chosen_part, x.same)),
-    "fields": lambda x: ((inverted, x.halves.high), (inverted, x.halves.low)),
-    "blocks of one name": lambda x: ((inverted, x.value), (another_inverted, x.value)),
-}
+def offsets(x, amounts=(1, 1), values=("nibble",) * 2, resets=("high",) * 2, outputs=("first", "second")):
+    """Return two instances to make of `offset`, with the names of their signals in the ports."""
+    parts = [[getattr(x, name) for name in names] for names in (resets, values, outputs)]
+    return [
+        (offset, x.clk, reset, Late(value, amount), moved)
+        for amount, reset, value, moved in zip(amounts, *parts, strict=True)
+    ]
+
+
+PEAK = np.eye(1, 3000, 1500)[0]
+ONE = Mode(1)
+ALIKE = [
+    *(partial(offsets, amounts=amounts) for amounts in ((1, 1), (ONE, ONE), ((0, 0), (0, 0)))),
+    partial(offsets, resets=("low", "low")),
+    lambda x: ((chosen_part, x.halves, x.one), (chosen_part, x.same, x.two)),
+    lambda x: ((inverted, x.halves.high, x.one), (inverted, x.halves.low, x.two)),
+]
+APART = [
+    *(
+        partial(offsets, amounts=amounts)
+        for amounts in [(1, 2), (1, True), (0, False), (ONE, Mode(2)), (PEAK, 2 * PEAK), ((0, 0), (0, 0, 0)),
+                        ((1, 0), (True, 0)), (1, Signed(1)), (0.0, -0.0)]
+    ),
+    partial(offsets, resets=("low", "high")),
+    partial(offsets, outputs=("first", "third")),
+    # One signal at two ports.
+    lambda x: (
+        (step, x.clk, x.nibble, x.nibble, x.one, unconnected(1)),
+        (step, x.clk, x.nibble, x.other, x.two, unconnected(1)),
+    ),
+    lambda x: ((chosen_part, x.pair, x.one), (chosen_part, x.mirrored, x.two)),
+    lambda x: ((chosen_part, x.halves, x.one), (chosen_part, x.thin, x.two)),
+    lambda x: ((inverted, x.nibble, x.one), (another_inverted, x.nibble, x.two)),
+]  # fmt: skip
+for values in combinations_with_replacement(("nibble", "digit", "flag", "narrow", "signed"), 2):
+    (ALIKE if values[0] == values[1] else APART).append(partial(offsets, values=values))
 
 
 @block
-def in_pairs(inputs, first, second, kind):
+def in_pairs(x, instances):
     """Instantiate a block twice, or two blocks, with arguments that differ in one thing."""
-    (one, *ones), (two, *twos) = KINDS[kind](inputs)
-    some, others = one(*ones, first), two(*twos, second)
+    (one, *ones), (two, *twos) = instances(x)
+    some, others = one(*ones), two(*twos)
 
     return some, others
 
 
 @pytest.mark.parametrize(
-    ("kind", "modules", "inputs", "outputs"),
-    [
-        ("one signal at two ports", ["mix", "mix_1"], {"value": 9, "other": 5}, [0, 12]),
-        ("classes", ["chosen_part", "chosen_part_1"], {"pair_high": 3, "mirrored_low": 12}, [3, 12]),
-        ("layouts", ["chosen_part", "chosen_part_1"], {"halves_high": 6, "thin_high": 2}, [6, 2]),
-        ("equal layouts", ["chosen_part"], {"halves_high": 6, "same_high": 9}, [6, 9]),
-        ("fields", ["inverted"], {"halves_high": 5, "halves_low": 12}, [10, 3]),
-        ("blocks of one name", ["inverted", "inverted_1"], {"value": 6}, [9, 7]),
-    ],
+    ("instances", "apart"), [(instances, kind is APART) for kind in (ALIKE, APART) for instances in kind]
 )
-def test_what_makes_two_modules(kind, modules, inputs, outputs, tmp_path):
-    def arguments() -> dict:
-        return {"inputs": Inputs(), "first": unsigned(4), "second": unsigned(4), "kind": kind}
-
-    leaf = Leaf(in_pairs, arguments, tmp_path)
-    assert [module.name for module in leaf.modules] == [*modules, "in_pairs"]
-    assert list(leaf.modules[-1].instances.values()) == [modules[0], modules[-1]]
-    stimulus = {f"inputs_{name}": value for name, value in inputs.items()}
-    assert list(leaf.run_both([stimulus])[-1].values()) == outputs
+def test_arguments_that_differ_make_modules_that_differ(instances, apart, tmp_path, random):
+    leaf = Leaf(in_pairs, lambda: {"x": Ports(), "instances": instances}, tmp_path)
+    name, *more = [module.name for module in leaf.modules]
+    assert more == [*[f"{name}_1"] * apart, "in_pairs"]
+    assert [*leaf.modules[-1].instances.values()] == [name, f"{name}_1" if apart else name]
+    stimulus = []
+    for _ in range(20):
+        # No input leaves its range.
+        inputs = {port: int(random.integers(1 << shape.width)) % 10 for port, shape in leaf.given.items()}
+        stimulus += [inputs | dict.fromkeys({"x_clk"} & {*inputs}, phase) for phase in (0, 1)]
+    leaf.run_both(stimulus, settled=4)

@@ -24,7 +24,7 @@ HOSTILE = "[bold]x[/nope]\x1b[31m :smile: [link=http://x]y\x9b2J\u202e\nz"
 
 ESCAPED = r"[bold]x[/nope]\x1b[31m :smile: [link=http://x]y\x9b2J\u202e\nz"
 
-TINY = ("SCREEN=tiny", "UNITS=16", "RECTANGLES=4", "SIM=icarus")
+FULL = "No space left on device; free some space, or choose another place for the output"
 
 
 def raycaster(*words: str, cwd: Path, **options: object) -> subprocess.CompletedProcess[str]:
@@ -90,7 +90,7 @@ def test_text_is_shown_as_it_is():
 @pytest.mark.parametrize(
     "words",
     [
-        ("trace", "PIXEL=32,40", *TINY),
+        ("trace", "PIXEL=32,40", "SCREEN=tiny", "UNITS=16", "RECTANGLES=4", "SIM=icarus"),
         ("verilog", "--fix", "all", "--output", "[/nope]"),
         ("game", "ROWS=240x[/nope]"),
         ("fit", "--error", "[/nope]\x1b"),
@@ -136,14 +136,9 @@ def test_a_full_disk(tmp_path: Path, monkeypatch):
         with replaced(kept):
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    assert refused(lambda words: write()) == (
-        f"error: {kept}: No space left on device; free some space, or choose another place for the output\n"
-    )
+    assert refused(lambda words: write()) == f"error: {kept}: {FULL}\n"
     assert (kept / "old").exists()
     assert [path.name for path in tmp_path.iterdir()] == ["kept"]
-
-
-FULL = "No space left on device; free some space, or choose another place for the output"
 
 
 @pytest.mark.parametrize(("words", "unbuffered"), [("scenes", ""), ("scenes", "1"), ("--help", "1")])
