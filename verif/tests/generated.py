@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Random worlds and settings for property-based tests: Hypothesis generates examples, and shrinks failing ones."""
+"""Random settings for property-based tests: Hypothesis generates examples, and shrinks failing ones."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import hypothesis
-import numpy as np
 from hypothesis import strategies as st
 
 from raycaster.buses import BUSES
-from raycaster.configuration import WORLD_SIZE
 from raycaster.engines import ENGINES, Engine
-from raycaster.golden.random_world import EXTREMES
-from raycaster.golden.world import Rectangles
 from raycaster.verif.seeds import seed
 
 
@@ -22,37 +18,6 @@ def examples(count: int) -> Callable:
     """Return a decorator for a test with `count` examples, generated from the seed of all random tests."""
     settings = hypothesis.settings(max_examples=count, deadline=None, database=None, print_blob=True)
     return lambda test: hypothesis.seed(seed())(settings(test))
-
-
-class World(NamedTuple):
-    """A table, and rays from one camera, as arguments of `raycaster.golden.model.Model.trace`."""
-
-    rectangles: Rectangles
-    camera: np.ndarray
-    slopes: np.ndarray
-
-
-@st.composite
-def worlds(draw: st.DrawFn, lowest: int = 0, highest: int = WORLD_SIZE - 1) -> World:
-    """Generate a few rectangles and a few rays, with coordinates in a range."""
-    inside = [one for one in (*EXTREMES, lowest, highest) if lowest <= one <= highest]
-    # Few different coordinates, so that planes, edges and the camera often coincide.
-    pool = draw(st.lists(st.sampled_from(inside) | st.integers(lowest, highest), min_size=2, max_size=4))
-    coordinate = st.sampled_from(pool)
-    point = st.tuples(coordinate, coordinate, coordinate)
-    rectangle = st.tuples(point, point, st.integers(0, 2), st.booleans() | st.just(True))
-    drawn = draw(st.lists(rectangle, min_size=1, max_size=5))
-    # Copies of some, for ties.
-    drawn += draw(st.lists(st.sampled_from(drawn), max_size=3))
-    corners = np.array([(first, second) for first, second, *_ in drawn], dtype=np.int64)
-    for pair, (_, _, axis, _) in zip(corners, drawn, strict=True):
-        pair[1, axis] = pair[0, axis]
-    colours = np.arange(1, len(drawn) + 1).repeat(3).reshape(-1, 3).astype(np.uint8)
-    enabled = np.array([on for *_, on in drawn])
-    along_x = st.sampled_from([-200, -100, -1, 1, 100, 200])
-    across = st.sampled_from([-100, 0, 0, 1, 100]) | st.integers(-200, 200)
-    slopes = draw(st.lists(st.tuples(along_x, across, across), min_size=1, max_size=8))
-    return World(Rectangles(corners, colours, enabled), np.array(draw(point)), np.array(slopes))
 
 
 def engine_options(engine: Engine) -> dict[str, st.SearchStrategy]:

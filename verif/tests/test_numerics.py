@@ -4,17 +4,18 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import floor, inf, sqrt
+from math import floor, inf, sqrt, trunc
 
 import numpy as np
 import pytest
+from definition import Hit, follow, plane_of, within
 
 from raycaster.golden.backward import backward_errors
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.measures import ROUNDING_MODELS, hit_errors, measures, relative_conditions
 from raycaster.golden.random_world import random_camera, random_rectangles, random_slopes
 from raycaster.golden.rays import primary_slopes
-from raycaster.golden.rivals import RIVALS, SINGLE, Fixed, Float, RivalModel
+from raycaster.golden.rivals import RIVALS, SINGLE, Fixed, Float
 from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.watertight import suite
 from raycaster.golden.world import OTHER_AXES, Rectangles
@@ -115,19 +116,18 @@ def test_errors_keep_the_rule_and_their_bounds(name):
 # Other projects' arithmetic -------------------------------------------------------------------------------------------
 
 
-def rounded(value: Fraction, digits: int, nearest: bool) -> Fraction:
-    """Round a fraction to a binary significand, to nearest with ties to even or toward zero."""
+def exponent(value: Fraction) -> int:
+    """Return the exponent of the leading bit of a number other than 0."""
+    most = value.numerator.bit_length() - value.denominator.bit_length()
+    return most - (abs(value) < Fraction(2) ** most)
+
+
+def rounded(value: Fraction, numbers: Float) -> Fraction:
+    """Round a fraction to a format's significand, to nearest with ties to even or toward zero."""
     if not value:
         return value
-    exponent = 0
-    while abs(value) >= Fraction(2) ** (exponent + 1):
-        exponent += 1
-    while abs(value) < Fraction(2) ** exponent:
-        exponent -= 1
-    last = Fraction(2) ** (exponent + 1 - digits)
-    if nearest:
-        return round(value / last) * last
-    return (floor(abs(value) / last) * last) * (1 if value > 0 else -1)
+    last = Fraction(2) ** (exponent(value) + 1 - numbers.digits)
+    return (round if numbers.nearest else trunc)(value / last) * last
 
 
 OPERANDS = [0, 1, -1, 3, 7, 100, -190, 255, 511, -511]
@@ -136,21 +136,19 @@ OPERANDS = [0, 1, -1, 3, 7, 100, -190, 255, 511, -511]
 @pytest.mark.parametrize("numbers", [SINGLE, FLOAT20, Float(5, 8, nearest=True)], ids=["single", "float20", "small"])
 def test_floats_are_rounded_fractions(numbers, random):
     values = [*numbers.of(np.array(OPERANDS)), *numbers.of(random.integers(-511, 512, 60), random.integers(0, 12, 60))]
-    pairs = [(values[i], values[j]) for i, j in random.integers(len(values), size=(600, 2))]
-    for a, b in pairs:
-        left, right = Fraction(float(a)), Fraction(float(b))
-        one, other = np.array([a]), np.array([b])
-        assert Fraction(float(numbers.times(one, other)[0])) == rounded(left * right, numbers.digits, numbers.nearest)
-        if b:
-            assert Fraction(float(numbers.over(one, other)[0])) == rounded(
-                left / right, numbers.digits, numbers.nearest
-            )
-        if not numbers.nearest and a and b:
+    a, b = random.choice(values, (2, 600))
+    results = (getattr(numbers, operation)(a, b).tolist() for operation in ("times", "over", "plus"))
+    operands = ([Fraction(value) for value in each.tolist()] for each in (a, b))
+    for left, right, product, quotient, total in zip(*operands, *results, strict=True):
+        assert product == rounded(left * right, numbers)
+        if right:
+            assert quotient == rounded(left / right, numbers)
+        added = left, right
+        if not numbers.nearest and left and right:
             # The lesser operand loses what lies below the greater one's last digit.
-            last = Fraction(2) ** (max(np.frexp(a)[1], np.frexp(b)[1]).item() - numbers.digits)
-            left, right = (floor(abs(each) / last) * last * (1 if each > 0 else -1) for each in (left, right))
-        expected = rounded(left + right, numbers.digits, numbers.nearest)
-        assert Fraction(float(numbers.plus(one, other)[0])) == expected
+            last = Fraction(2) ** (max(exponent(left), exponent(right)) + 1 - numbers.digits)
+            added = (trunc(each / last) * last for each in added)
+        assert total == rounded(sum(added), numbers)
 
 
 def test_small_numbers_are_0():
@@ -180,51 +178,38 @@ def test_the_unit_computes_the_models_numbers(tmp_path, random):
     cases += ((random.integers(-(1 << 31) + 1, 1 << 31, (4, 5)) >> [0, 0, 16, 16, 10]) | 1 << 14).tolist()
     stimulus, expected = [], {}
     for a, b, c, d, e in cases:
-        stimulus.append(
-            {"load": 1, "store": 0, "a": a, "b": abs(b), "b_negative": int(b < 0), "c": c, "d": d, "e": abs(e),
-             "e_negative": int(e < 0)}
-        )  # fmt: skip
+        operands = {"a": a, "b": abs(b), "c": c, "d": d, "e": abs(e)}
+        words = {name: number % (1 << BITS) for name, number in operands.items()}
+        stimulus.append({"load": 1, "store": 0, "b_negative": int(b < 0), "e_negative": int(e < 0), **words})
         stimulus += [{"load": 0}] * STEPS + [{"store": 1}, {"store": 0}, {}, {}]
         difference = np.array([c - d])  # of 33 bits, as in the unit
         way = Q18.times(np.array([b]), Q18.over(difference, np.array([e])))
         expected[len(stimulus) - 2] = int(Q18.plus(np.array([a]), way)[0]) % (1 << BITS)
-    leaf = Leaf(fixed_unit, fixed_unit_ports, tmp_path)
-    outputs = leaf.run_both(
-        [{k: v % (1 << 32) if k in "abcde" else v for k, v in one.items()} for one in stimulus], settled=STEPS + 4
-    )
+    outputs = Leaf(fixed_unit, fixed_unit_ports, tmp_path).run_both(stimulus, settled=STEPS + 4)
     assert {cycle: outputs[cycle]["value"] for cycle in expected} == expected
 
 
-def fraction_hit(model: RivalModel, rectangles: Rectangles, camera, slope) -> tuple[int, list[Fraction]]:
-    """Trace a primary ray in single precision, from fractions and `rounded` alone."""
-    best, place = (-1, None), []
-    for index in range(len(rectangles)):
-        axis = int(rectangles.axes[index])
-        if not slope[axis]:
-            continue
-        one = lambda value: rounded(value, model.numbers.digits, nearest=True)  # noqa: E731
-        t = one(Fraction(int(rectangles.low[index, axis] - camera[axis]), int(slope[axis])))
-        point = [one(int(camera[u]) + one(int(slope[u]) * t)) for u in range(3)]
-        within = all(rectangles.low[index, u] <= point[u] <= rectangles.high[index, u] for u in OTHER_AXES[axis])
-        if t > 0 and within and (best[1] is None or t < best[1]):
-            best, place = (index, t), point
-    return best[0], place
+def single_hit(table: Rectangles, index: int, origin, slope, met) -> Hit | None:
+    """Return what `exact_hit` does for a primary ray, in single precision, from fractions and `rounded` alone."""
+    axis = plane_of(table, index)
+    if axis is None or not slope[axis]:
+        return None
+    t = rounded((table.corners[index, 0, axis].item() - origin[axis]) / slope[axis], SINGLE)
+    point = [rounded(origin[u] + rounded(slope[u] * t, SINGLE), SINGLE) for u in range(3)]
+    return (t, point) if t > 0 and within(table, index, point) else None
 
 
 def test_rays_in_single_precision_are_those_of_fractions(random):
-    hits, model = 0, RIVALS["single"]
+    hits = 0
     for _ in range(10):
         rectangles = random_rectangles(random)
-        rectangles = Rectangles(
-            *(getattr(rectangles, n)[rectangles.visible] for n in ("corners", "colours", "enabled"))
-        )
         camera, slopes = random_camera(random, rectangles), random_slopes(random, 20)
-        traced = model.trace(rectangles, camera, (0, 0, 0), slopes, 0)
-        for ray, slope in enumerate(slopes):
-            winner, place = fraction_hit(model, rectangles, camera, slope)
-            assert traced.winners[0][ray] == winner
-            if winner >= 0:
-                assert traced.points[0][ray].tolist() == [floor(one * (1 << 30)) for one in place]
+        traced = RIVALS["single"].trace(rectangles, camera, (0, 0, 0), slopes, 0)
+        for ray, slope in enumerate(slopes.tolist()):
+            [stop] = follow(rectangles, (0, 0, 0), camera.tolist(), slope, 0, hit=single_hit)
+            assert traced.winners[0][ray] == stop.winner
+            if stop.winner >= 0:
+                assert traced.points[0][ray].tolist() == [floor(one * (1 << 30)) for one in stop.points[stop.winner]]
                 hits += 1
     assert hits > 40
 
@@ -243,14 +228,14 @@ def test_an_epsilon_prevents_a_mirror_from_hitting_itself():
 # Watertightness -------------------------------------------------------------------------------------------------------
 
 
-def count_leaks(model, seed_of_suite: int, tables: int = 2, rays: int = 400) -> tuple[int, int]:
+def count_leaks(model) -> tuple[int, int]:
     """Return the numbers of leaks and of rays."""
-    leaks = [aimed.leaks(model) for aimed in suite(seed_of_suite, tables, rays)]
+    leaks = [aimed.leaks(model) for aimed in suite(seed(), 2, 400)]
     return sum(int(one.sum()) for one in leaks), sum(map(len, leaks))
 
 
 def test_exact_comparison_is_watertight():
-    leaks, rays = count_leaks(ExactModel(), seed())
+    leaks, rays = count_leaks(ExactModel())
     assert rays > 2000 and leaks == 0
 
 
@@ -294,12 +279,12 @@ def test_an_open_comparison_leaks(monkeypatch):
         return n, e, within
 
     monkeypatch.setattr(Rectangles, "crossed", strict)
-    leaks, rays = count_leaks(ExactModel(), seed())
+    leaks, rays = count_leaks(ExactModel())
     assert leaks > rays / 2
 
 
 def test_rounding_leaks():
     """Between steps, truncated points fall short of both; the seed engine leaks in reflections, for some tables."""
-    assert all(count_leaks(RIVALS[name], seed())[0] > 50 for name in ("q18.14", "float20"))
+    assert all(count_leaks(RIVALS[name])[0] > 50 for name in ("q18.14", "float20"))
     of_seed = [aimed for aimed in suite(1, 6, 4000) if not aimed.turned and aimed.kind == "mirrored room"]
     assert sum(aimed.leaks(SeedModel()).sum() for aimed in of_seed) > 0
