@@ -51,7 +51,7 @@ def mirrored_on(random: np.random.Generator, table: Rectangles, camera, slope, m
         # The way to the end of the world.
         most = min((np.where(way > 0, WORLD_SIZE - 1, 0) - place)[moving] / way[moving])
         axis = int(random.choice(moving))
-        plane = round(place[axis] + way[axis] * most * random.uniform(0.1, 1))
+        plane = int(np.clip(round(place[axis] + way[axis] * most * random.uniform(0.1, 1)), 0, WORLD_SIZE - 1))
         place = place + way * (plane - place[axis]) / way[axis]
         around = random.choice([3, 40, 400], (2, 3)) * np.array([[-1], [1]])
         corners[index] = np.clip(np.rint(place) + around, 0, WORLD_SIZE - 1)

@@ -7,14 +7,26 @@ from typing import Any
 from unittest import mock
 
 import numpy as np
-from hard_scenes import edged, pixel_ports, pixel_word, rectangles_in_view, traced_scene, tracer
-from vectors import AXES, Bench, by_axis, colour_word
+from hard_scenes import (
+    cornered,
+    edged,
+    facing,
+    pixel_ports,
+    pixel_word,
+    rectangles_in_view,
+    rivalled,
+    traced_scene,
+    tracer,
+)
+from vectors import AXES, Bench, basis_inputs, by_axis, colour_word
 
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
+from raycaster.golden.random_world import random_basis
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
+from raycaster.scene import UNTURNED
 from raycaster.screens import BEAM_SCREENS, SCREENS, Screen, Span
-from raycaster.verif.expected import sorted_rect, trace_cycles
+from raycaster.verif.expected import TraceCycle, sorted_rect, trace_cycles
 
 SMALL_SCREEN = Screen(
     columns=16, rows=4, horizon_row=3, doubling=2,
@@ -72,54 +84,72 @@ def fate_of(config: Configuration, golden, table: Rectangles) -> dict[str, Any]:
     return {"behind": behind, "lost": next(iter(np.flatnonzero(ended.all(axis=1))), None)}
 
 
-def rects_shown(config: Configuration, cycle, table: Rectangles) -> dict[str, int]:
-    """Return the rectangles that the control and the memory show all units in a cycle."""
-    inputs = {}
-    if cycle.current is not None:
-        inputs |= sorted_rect(table, cycle.current, "rect", config)
-    if cycle.offered is not None:
-        inputs |= sorted_rect(table, cycle.offered, "offered", config)
+def rects_shown(random: np.random.Generator, config: Configuration, cycle: TraceCycle, table: Rectangles) -> dict:
+    """Return the rectangles that the control and the memory show all units in a cycle, any ones if don't care."""
+    inputs, usable = {}, usable_of(table)
+    for prefix, index in (("rect", cycle.current), ("offered", cycle.offered)) if usable else ():
+        inputs |= sorted_rect(table, int(random.choice(usable)) if index is None else index, prefix, config)
     return inputs
 
 
 def unrelated_inputs(random: np.random.Generator, config: Configuration) -> dict[str, int]:
-    """Return random values for the inputs that a unit reads in a single step: the pixel's place and the plane."""
-    return {
-        "place_row": int(random.integers(config.screen_geometry.rows)),
-        "place_column_offset": int(random.integers(config.groups)),
-        "rect_axis": int(random.integers(3)),
-        "rect_position": int(random.integers(WORLD_SIZE)),
-    }
+    """Return random values for the inputs that a unit reads in a single step; the place, if it need not be stable."""
+    inputs = {"rect_axis": int(random.integers(3)), "rect_position": int(random.integers(WORLD_SIZE))}
+    if not config.turn:
+        inputs["place_row"] = int(random.integers(config.screen_geometry.rows))
+        inputs["place_column_offset"] = int(random.integers(config.groups))
+    return inputs
 
 
 def check_ray_unit(leaf: Bench, config: Configuration, random: np.random.Generator, rays: int = 24) -> None:
-    """Step rays through a unit as its control does; compare MyHDL and Verilog with the golden model."""
-    slopes = primary_slopes(config.screen_geometry)
-    rows, columns, _ = slopes.shape
-    pixels, rays = [], leaf.some(rays)
+    """Step rays through a unit as its control does; compare MyHDL and Verilog with the golden model.
+
+    Many of their last hits are close decisions: at edges, next to rivals, in corners, at the world's end.
+    """
+    screen, basis = config.screen_geometry, UNTURNED
+    pixels, rays, alive = [], leaf.some(rays), set()
     # Numbers of surfaces that a ray hits; each must occur, from none to the most.
     fates, every_fate = set(), set(range(config.reflections + 2))
     while len(pixels) < rays or fates != every_fate:
-        row = int(random.choice([0, 1, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
-        column = int(random.choice([0, 1, columns // 2, columns - 1, random.integers(columns)]))
-        camera, table, background, reflections, golden = traced_scene(random, config, slopes[row, column][None])
+        row, column = (
+            int(random.choice([0, 1, middle, count - 1, random.integers(count)]))
+            for middle, count in ((screen.horizon_row, screen.rows), (screen.centre_column, screen.columns))
+        )
+        hard = random.choice(["none", "rivalled", "cornered", "facing"], p=[0.3, 0.3, 0.3, 0.1])
+        if hard == "facing":
+            # A ray nearly along x stays in the world between the facing walls.
+            row = int(np.clip(screen.horizon_row + random.integers(-20, 21), 0, screen.rows - 1))
+            column = int(np.clip(screen.centre_column + random.integers(-20, 21), 0, screen.columns - 1))
+        basis = random_basis(random) if config.turn else UNTURNED
+        slope = primary_slopes(screen, basis)[row, column]
+        camera, table, background, reflections, golden = traced_scene(random, config, slope[None])
+        if hard == "rivalled":
+            table = rivalled(random, table, int(golden.winners[0][0]), camera, slope)
+        elif hard != "none":
+            table = {"cornered": cornered, "facing": facing}[hard](random, table, camera, slope)
+        golden = tracer(config)(table, camera, background, slope[None], reflections)
         fate = sum(int(winner[0]) >= 0 for winner in golden.winners)
         if len(pixels) >= rays and fate in fates:
             continue
         fates.add(fate)
-        held = place_of(config, row, column) | by_axis("camera_", camera)
-        held["picture_background"] = colour_word(background)
-        for cycle in trace_cycles(config, usable_of(table), reflections, **fate_of(config, golden, table)):
-            inputs = {**held, **cycle.steps, **rects_shown(config, cycle, table)}
+        held = scene_inputs(camera, table, background, reflections) | place_of(config, row, column)
+        held |= basis_inputs(basis)
+        cycles = trace_cycles(config, usable_of(table), reflections, **fate_of(config, golden, table))
+        # The place is valid before the ray is loaded.
+        leaf.case(held | dict.fromkeys(cycles[0].steps, 0))
+        for cycle in cycles:
+            inputs = {**held, **cycle.steps, **rects_shown(random, config, cycle, table)}
             if not cycle.steps["steps_screen_to_ray"] and not cycle.steps["steps_find_intersection"]:
                 inputs |= unrelated_inputs(random, config)
-            fate = {"fate_towards": cycle.towards, "fate_alive": cycle.alive}
-            leaf.case(inputs, {name: value for name, value in fate.items() if name in leaf.seen})
+            wanted = {"fate_towards": cycle.towards, "fate_alive": cycle.alive}
+            leaf.case(inputs, {name: value for name, value in wanted.items() if name in leaf.seen})
+            alive.add(cycle.alive)
         pixels.append(leaf.cycle)
         # After done, the pixel stays valid whatever the inputs.
-        after = {**dict.fromkeys(inputs, 0), "picture_background": held["picture_background"]}
-        leaf.case(after, pixel_ports(config, golden.colours[0]))
-    leaf.check(settled=pixels[0])
+        leaf.case(dict.fromkeys(inputs, 0) | {"picture_background": held["picture_background"]})
+        leaf.expect(pixel_ports(config, golden.colours[0]))
+    assert "fate_alive" not in leaf.seen or alive == {None, 0, 1}
+    leaf.check(settled=pixels[0], spare=True)
 
 
 def monitored(outputs: list[dict[str, int]], config: Configuration) -> list[np.ndarray]:

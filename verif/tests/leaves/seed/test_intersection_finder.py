@@ -82,7 +82,7 @@ def test_intersection_finder(config, leaf_of, random):
     for origin, slope, plain in traced_rays(config, random, 15) + [aimed_ray(config, random) for _ in range(180)]:
         table, start = random_looks(random, plain), [Fraction(int(place), one) for place in origin]
         for cycle in trace_cycles(config, usable_of(table), 0)[1:]:
-            inputs = by_axis("ray_", origin) | slope_inputs(slope, "ray") | rects_shown(config, cycle, table)
+            inputs = by_axis("ray_", origin) | slope_inputs(slope, "ray") | rects_shown(random, config, cycle, table)
             leaf.case(inputs | {name: value for name, value in cycle.steps.items() if name in leaf.given})
             if cycle.steps["steps_write_z_buf"]:
                 found = hit(table, cycle.offered, start, slope.tolist(), None)
