@@ -9,6 +9,7 @@ import shutil
 import subprocess
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -22,7 +23,6 @@ from raycaster.sim import ensure_tools, simulator
 from raycaster.sim.ensure_tools import ensure, find, install_command
 from raycaster.sim.simulator import (
     MODELS_VARIABLE,
-    VERILATOR_FLAGS,
     SimulationError,
     Tool,
     build_model,
@@ -216,23 +216,22 @@ def test_builds_once(tmp_path, own_models, monkeypatch):
 
 def test_models_share_a_library(tmp_path, own_models, monkeypatch):
     """The library shared by Verilator's models is compiled once; another compiler flag needs no other library."""
-    libraries, compiler = [], simulator._compiler
+    asked, compiler = [], partial(simulator._compiler, simulator.find_tool("verilator"), BUILD / "model")
 
     def recorded(tool: Tool, parent: Path, *arguments: Sequence[str]) -> tuple[list[str], list[str]]:
         # Other tests and commands use the same library, so it is usually built already.
-        command, library = compiler(tool, BUILD / "model", *arguments)
-        libraries.append((library, "-include" in command))
-        return command, library
+        asked.append(arguments)
+        return compiler(*arguments)
 
     monkeypatch.setattr(simulator, "_compiler", recorded)
-    for flags in (VERILATOR_FLAGS, (*VERILATOR_FLAGS, "-CFLAGS", "-O0")):
-        directory = build_model(TINY, build=tmp_path, flags=flags).directory
-        assert (directory / "bench").exists()
-        assert list(directory.glob("*.o")) == []
-        # The compiler says if it cannot use the precompiled headers.
-        assert "invalid-pch" not in directory.with_suffix(".log").read_text()
-    [(library, precompiled), (other, not_precompiled)] = libraries
-    assert (precompiled, not_precompiled) == (True, False)
+    directory = build_model(TINY, build=tmp_path).directory
+    assert (directory / "bench").exists()
+    assert list(directory.glob("*.o")) == []
+    # The compiler says if it cannot use the precompiled headers.
+    assert "invalid-pch" not in directory.with_suffix(".log").read_text()
+    [(features, flags)] = asked
+    (command, library), (another, other) = (compiler(features, [*flags, *more]) for more in ((), ("-O0",)))
+    assert ("-include" in command, "-include" in another) == (True, False)
     assert library == other
     assert {Path(path).name for path in library} >= {"verilated.o", "verilated_vpi.o"}
     assert [path for path in library if path.endswith("_c.o")] == []
