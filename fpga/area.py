@@ -347,8 +347,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         raise UserError(f"family: expected one of {', '.join(FAMILIES)}, got {arguments.family}")
     console = Console()
     if asked := [name for name in SETS if getattr(arguments, name)]:
-        others = arguments.scene, arguments.fix, arguments.family, arguments.route, given_options(arguments)
-        if len(asked) > 1 or any(others):
+        routing = arguments.route or arguments.route_only
+        if len(asked) > 1 or any((arguments.scene, arguments.fix, arguments.family, routing, given_options(arguments))):
             raise UserError(f"{asked[0]}: counts a fixed set of designs, for the ECP5; leave everything else out")
         announce("area")
         designs, show, name, scope = SETS[asked[0]]
@@ -357,11 +357,12 @@ def main(argv: Sequence[str] | None = None) -> None:
         keep(arguments, {name: rows}, scope, provenance, "placing and routing")
         return
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, console)
+    # A directory per design and seed, so that two runs at a time do not replace each other's files.
+    output = arguments.output / f"{config.name}-seed-{arguments.seed}"
     announce("area")
     if arguments.route_only:
         with console.waiting("placing and routing"):
-            # A directory per run, so that two runs at a time do not replace each other's files.
-            routed = route(config, arguments.output / f"{config.name}-seed-{arguments.seed}", arguments.seed)
+            routed = route(config, output, arguments.seed)
         show_routed(routed, console)
         keep(arguments, {"configuration": config.name, **routed}, scope_of(config), provenance, "a run on a chip")
         return
@@ -375,7 +376,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         tasks[f"{family.name}-{units}"] = partial(measure, with_units(config, units), family)
     for family in families:
         tasks[f"{family.name}-modules"] = partial(measure_modules, config, family)
-    results = _run(tasks, arguments.output, console)
+    results = _run(tasks, output, console)
 
     models, published = {}, {"configuration": config.name, "families": {}}
     for family in families:
@@ -393,7 +394,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     if arguments.route:
         published["routed"] = results["route"]
         show_routed(published["routed"], console)
-    (arguments.output / "area.json").write_text(json.dumps(published, indent=2) + "\n")
+    (output / "area.json").write_text(json.dumps(published, indent=2) + "\n")
     keep(arguments, published, scope_of(config), provenance, left_out="" if arguments.route else "placing and routing")
 
 

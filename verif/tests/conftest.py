@@ -23,10 +23,9 @@ from vectors import Bench as LeafBench
 from raycaster.cli.__main__ import main
 from raycaster.configuration import Configuration, configure
 from raycaster.convert import provenance
-from raycaster.docs.commands import outside_make
 from raycaster.hdl.elaboration import forgetting
 from raycaster.hdl.leaf import Leaf
-from raycaster.options import run_command
+from raycaster.options import outside_make, run_command
 from raycaster.output import MARK
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import MODELS_VARIABLE, build_model, find_tool, run_bench
