@@ -56,7 +56,7 @@ def noticed(bench: Bench, tmp_path) -> Noticed:
     return run
 
 
-@pytest.mark.slow_sets(quick=["register-small", "traffic-small"])
+@pytest.mark.slow_sets(quick=["register-small"])
 @pytest.mark.parametrize("design", DESIGNS)
 @pytest.mark.parametrize("name", ["register", "traffic"])
 def test_bench(bench: Bench, name: str, design: str):
@@ -172,6 +172,7 @@ def test_a_fault_is_noticed_in_traffic(noticed: Noticed, fault):
 
 
 def test_icarus_takes_clocks_that_rest(bench: Bench):
+    """In `make test`, this is the run of the traffic bench without a fault."""
     bench(TRAFFIC_BENCH, SMALL[OWN], "icarus", seeds=(1,), defines=GATED)
 
 

@@ -285,7 +285,7 @@ def test_a_broken_link_is_noticed(design, tmp_path, file, right, wrong, complain
 # Bitstreams -----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow_sets(*(board.name for board in BOARDS if board != ULX3S))
+@pytest.mark.slow_sets(quick=["icebreaker"])
 @pytest.mark.parametrize("board", BOARDS, ids=lambda board: board.name)
 def test_a_small_bitstream(board, tmp_path):
     """The whole flow runs within the board's multipliers, and every clock is fast enough."""

@@ -13,6 +13,7 @@ from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.sim.simulator import find_tool
 
 
+@pytest.mark.slow_sets("verilator")
 @pytest.mark.parametrize("simulator", ["icarus", "verilator"])
 def test_every_kind_of_connection_works(simulator, tmp_path, monkeypatch, random):
     """Both simulators of Verilog agree with MyHDL."""

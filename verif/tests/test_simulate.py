@@ -22,8 +22,9 @@ from raycaster.sim.scenes import Outcome, output_directory, run_all, show
 from raycaster.sim.simulator import MODELS_VARIABLE, Model, SimulationError, convert
 
 # Icarus builds quickly.
-SMALL = configure(screen="tiny", units=8, rectangles=3)
-SMALL_OPTIONS = (SMALL_SCENE, "--screen", "tiny", "--units", 8, "--rectangles", 3, "--simulator", "icarus")
+SMALL = configure(engine="exact", screen="tiny", rectangles=3)
+OPTIONS = "--engine exact --rectangles 3 --screen tiny --simulator icarus"
+SMALL_OPTIONS = (SMALL_SCENE, *OPTIONS.split())
 
 
 def _sim(build: Path, *arguments: object, code: int = 0) -> str:
@@ -37,7 +38,7 @@ def test_one_scene_and_two(tmp_path, monkeypatch):
     """The run writes pictures, results and a table; with waveforms, it names their file; a sheet shows both scenes."""
     monkeypatch.delenv(MODELS_VARIABLE)  # so that no built model is found
     said = _sim(tmp_path, "--waves")
-    output = tmp_path / "sim-tiny" / "small"
+    output = tmp_path / "sim-exact-tiny" / "small"
     for name in ("frame", "golden", "exact", "diff"):
         assert Image.open(output / f"{name}.png").size == (128, 96)
     assert (output / "frame.png").read_bytes() == (output / "golden.png").read_bytes()
@@ -53,7 +54,7 @@ def test_one_scene_and_two(tmp_path, monkeypatch):
     other.write_text(SMALL_SCENE.read_text().replace("#c8c8b4", "#ff0000"))
     said = _sim(tmp_path, other, "--waves")
     assert "was built before" in said
-    sheet, output = Image.open(tmp_path / "sim-tiny" / "scenes.png"), output.parent
+    sheet, output = Image.open(tmp_path / "sim-exact-tiny" / "scenes.png"), output.parent
     assert sheet.size == (2 * 320 + 8, 240)
     floors = [sheet.getpixel((left + 160, 235)) for left in (0, 328)]
     assert floors == [Image.open(output / name / "frame.png").getpixel((64, 94)) for name in ("small", "other")]
@@ -131,8 +132,8 @@ def test_a_wrong_pixel_fails(tmp_path):
     assert faults
     combiner.write_text(text)
     said = _sim(tmp_path, code=1)
-    output = tmp_path / "sim-tiny" / "small"
-    command = f"raycaster trace {SMALL_SCENE} --pixel 0,0 --units 8 --rectangles 3 --screen tiny --simulator icarus"
+    output = tmp_path / "sim-exact-tiny" / "small"
+    command = f"raycaster trace {SMALL_SCENE} --pixel 0,0 {OPTIONS}"
     for text in ("pixels are wrong", str(output / "sim.log"), str(output / "diff.png"), command):
         assert text in said
 
