@@ -160,8 +160,8 @@ RESTING = {
 
 
 @pytest.mark.slow_sets(
-    "a-commit", "a-fetch", "answered-after-reset", "live-in-mid-frame", "rectangles-too-early", "start-screen",
-    "unmapped-aliases", "waits-in-a-burst",
+    "a-commit", "a-fetch", "answered-after-reset", "live-in-mid-frame", "over-another-copy", "rectangles-too-early",
+    "start-screen", "unmapped-aliases", "waits-in-a-burst",
 )  # fmt: skip
 @pytest.mark.parametrize("fault", FAULTS | RESTING)
 def test_a_fault_is_noticed_in_traffic(noticed: Noticed, fault):

@@ -46,7 +46,7 @@ endmodule
 PINS = {"hs": "hs", "vs": "vs", "blank_n": "blank_n", "clk": "pixel_clk", "r": "r"}
 
 
-@pytest.mark.slow_sets(quick=["no-hs", "one-bit-of-one-pixel", "picture-a-pixel-late", "sound"])
+@pytest.mark.slow_sets(quick=["no-hs", "one-bit-of-one-pixel", "sound"])
 @pytest.mark.parametrize(
     ("pins", "complaint"),
     [

@@ -28,7 +28,7 @@ FAULTY = [proof for proof in PROPERTIES if proof.faults]
 
 @pytest.mark.slow_sets(
     "avalon-agent", "beam-tester-products-beam-vga240-s2-u1-r2-m1-c8 folded", "finder-quotients", "fold-exact",
-    "fixed-rects", "fold-products", "line-start", "turned-walks",
+    "fixed-rects", "fold-products", "line-start", "row-setup-beam", "turned-walks",
 )  # fmt: skip
 @pytest.mark.parametrize("proof", [proof for proof in FAULTY if proof.small], ids=str)
 def test_a_property_holds(proof, output):
