@@ -64,8 +64,8 @@ clean:
 
 # Install with uv if it is available. A stamp file per set of extras avoids asking the package index again. Modules are
 # compiled when they are first imported, unless Python is told not to keep what it compiles.
-COMPILED = $(if $(PYTHONDONTWRITEBYTECODE),,--no-compile)
-PIP = $(or $(addsuffix  pip install --python $(PYTHON),$(shell command -v uv)),$(PYTHON) -m pip install --use-pep517 $(COMPILED))
+NO_COMPILE = $(if $(PYTHONDONTWRITEBYTECODE),,--no-compile)
+PIP = $(or $(addsuffix  pip install --python $(PYTHON),$(shell command -v uv)),$(PYTHON) -m pip install --use-pep517 $(NO_COMPILE))
 ADD = $(PIP) -q -c constraints.txt -e
 install = $(if $1,if [ ! -e $(VENV)/$1 ]; then echo "installing $1 (usually a minute)"; $(ADD) '.[$1]'; touch $(VENV)/$1; fi)
 $(VENV)/base: pyproject.toml constraints.txt

@@ -26,7 +26,7 @@ def rows_of(text: str | None, row: int, count: int) -> tuple[int, int]:
     """Parse the first and the last of `count` rows; without a text, both are the pixel's row.
 
     Raises:
-        UserError: the text is not one or two numbers, or there are no such rows, or the pixel's is not among them.
+        UserError: the text is not one or two numbers, a row does not exist, or the rows leave out the pixel's.
     """
     if text is None:
         return row, row

@@ -60,19 +60,17 @@ def write_files(waves: Waves, view: View) -> list[Path]:
         UserError: the waveform lacks a signal.
     """
     directory = waves.path.resolve().parent
-    filters = {}
+    filters = {place: directory / f"{'.'.join(place)}.txt" for place in view.states}
+    # Both before the first file is written, as a signal may be missing.
+    gtkwave, surfer = _gtkwave(waves, view, filters), _surfer(waves, view)
     for place, names in view.states.items():
         title, bits = ".".join(place), max(names).bit_length()
-        filters[place] = directory / f"{title}.txt"
         _write(filters[place], make_translation_filter(list(names.items()), "bin", bits) + "\n")
         lines = [f"Name = {title}", f"Bits = {bits}", *(f"{value} {name}" for value, name in names.items())]
         mappings = directory / ".surfer" / "mappings"
         mappings.mkdir(parents=True, exist_ok=True)
         _write(mappings / f"{title}.txt", "\n".join(lines) + "\n")
-    return [
-        _write(directory / GTKWAVE_FILE, _gtkwave(waves, view, filters)),
-        _write(directory / SURFER_FILE, _surfer(waves, view)),
-    ]
+    return [_write(directory / GTKWAVE_FILE, gtkwave), _write(directory / SURFER_FILE, surfer)]
 
 
 def _write(path: Path, text: str) -> Path:

@@ -271,6 +271,7 @@ def _families(kept: Outcome) -> str:
         found = kept.figures["families"][name]
         whole, parts = found["units"]["32"], [found[part]["elements"] for part in ("shared", "unit")]
         logic = f"{whole['elements']:,} {family.element.replace(',', '')}"
+        # Intel's chips count an 18-bit multiplier as two.
         multipliers = f"{whole['multipliers']}{'' if name == 'ecp5' else ' of 9 bits'}"
         rows.append([family.title, logic, *parts, whole["registers"], multipliers])
     return table(["family", "logic", "shared", "one unit", "registers", "multipliers"], rows)
@@ -368,7 +369,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         return
     families = [FAMILIES[arguments.family]] if arguments.family else list(FAMILIES.values())
     counts = unit_counts(config)
-    # Long tasks come first.
+    # Long tasks come first, so that no long one is left to run alone at the end.
     tasks: dict[str, Callable[[Path], Any]] = {}
     if arguments.route:
         tasks["route"] = partial(route, config, seed=arguments.seed)

@@ -114,18 +114,19 @@ def _arithmetic(
     engine: str, path: Path, options: Mapping[str, Any], error: float | None
 ) -> Iterator[tuple[Mapping[str, Any], Design, float]]:
     """Yield the options of each arithmetic that meets the error, its general design, and its error."""
-    choices: list[list[dict[str, Any]]] = [[{}]]
-    if ENGINES[engine].divides:
-        roundings = (options["rounding"],) if "rounding" in options else ROUNDINGS
-        fractions = (options["fraction_bits"],) if "fraction_bits" in options else FRACTIONS
-        choices = [[{"rounding": one, "fraction_bits": bits} for bits in fractions] for one in roundings]
-    for of_rounding in choices:
-        for arithmetic in of_rounding:
-            chosen = {**options, "engine": engine, **arithmetic}
-            general = general_design(path, chosen)
+    chosen = {**options, "engine": engine}
+    if not ENGINES[engine].divides:
+        yield chosen, general_design(path, chosen), 0.0
+        return
+    roundings = (options["rounding"],) if "rounding" in options else ROUNDINGS
+    fractions = (options["fraction_bits"],) if "fraction_bits" in options else FRACTIONS
+    for rounding in roundings:
+        for fraction in fractions:
+            one = {**chosen, "rounding": rounding, "fraction_bits": fraction}
+            general = general_design(path, one)
             wrong = error_of(general)
             if error is None or wrong <= error:
-                yield chosen, general, wrong
+                yield one, general, wrong
                 break
 
 

@@ -60,7 +60,7 @@ class UnitProbes(Description):
     """The part of a description that does not depend on how a unit computes.
 
     Attributes:
-        modules: names of the control's module and of a unit's.
+        modules: module names of the control and of a unit.
         steps: steps of the control for each tested rectangle, in order, by kind of event.
     """
 

@@ -130,7 +130,7 @@ def everything(clk, word, pair, joined, swapped, count, part, narrow, inverses):
     first = step(clk, lower, amounts[0], halves[0], carries[0])
     second = step(clk, upper, amounts[1], halves[1], carries[1])
     third = step(clk, total, one, count, carry)
-    # A slice of a signal whose other bits go elsewhere, and an interface of which one signal is read.
+    # Other blocks read the rest of this slice's signal; of this interface only one signal is read.
     fourth = step(clk, pair.low(2, 0), pair.low(2, 0), narrow, unconnected(1))
     choosing = chosen_part(pair, part)
     crossing = swap(pair, swapped)

@@ -26,7 +26,7 @@ from raycaster.convert import provenance
 from raycaster.convert.take_home import TOP
 from raycaster.digests import code_digest, uncommented
 from raycaster.docs import __main__ as manual
-from raycaster.docs import blocks, commands, drawings, facts, pages, proofs, scaling, tables, timing
+from raycaster.docs import blocks, commands, drawings, engine_figures, facts, pages, proofs, scaling, tables, timing
 from raycaster.docs.commands import commands_of
 from raycaster.docs.results import main as results
 from raycaster.engines import ENGINES
@@ -134,6 +134,21 @@ def test_timing_diagrams_match_the_design():
     assert set(drawn) == {path.stem for path in timing.SOURCES.iterdir()}
     for name, lanes in drawn.items():
         assert timing.kept(name).splitlines() == lanes.splitlines(), f"{name}: run make docs to redraw it"
+
+
+def test_timing_diagrams_match_the_configuration():
+    """Cycles counted in the simulation equal those computed for the row budget."""
+    cycles = {
+        (diagram.name, start, end): measured
+        for diagram in timing.DIAGRAMS
+        for start, end, measured in timing.measured(diagram, timing.kept(diagram.name))
+    }
+    config = timing.CONFIGURATION
+    assert cycles["renderer_and_ray_unit", "done", "done"] == config.group_cycles
+    assert cycles["ray_control_and_ray_unit", "find_intersection", "find_intersection"] == config.rect_cycles
+    a_ray = config.rectangles * config.rect_cycles + config.pass_latency
+    assert cycles["ray_control_and_ray_unit", "add_colour", "add_colour"] == a_ray
+    assert cycles["video_and_counters", "start_screen", "start_row"] == config.screen_geometry.row_cycles
 
 
 @pytest.fixture(scope="module")
@@ -390,6 +405,14 @@ def test_pages_with_a_fault(tmp_path: Path, monkeypatch, capfd):
         manual.main(["--keep-timing", "--no-web"])
     assert "registers.md:3: WARNING" in capfd.readouterr().err
     assert [path.name for path in (tmp_path / "build").iterdir()] == []
+
+
+def test_the_measured_designs_drew_the_right_pictures():
+    designs = tables.outcomes()["engines"].figures["designs"]
+    assert [design["options"] for design in designs] == list(map(dict, engine_figures.DESIGNS))
+    for design in designs:
+        assert design["wrong_vs_golden"] == 0
+        assert (design["wrong_vs_exact"] > 0) == (design["options"]["engine"] == "seed")
 
 
 def test_the_scaling_figures(tmp_path: Path, monkeypatch):

@@ -46,7 +46,7 @@ def with_documented_ports(clk, value, slope, pair, cycles: int, config=None):
 
 
 def test_ports_and_processes_have_their_comments(tmp_path):
-    """Each argument's text precedes its first port, with numbers, options and Verilog names instead of Python's.
+    """Each argument's text stands above its first port; numbers, options and Verilog names replace Python expressions.
     A process needs no comment."""
     config = configure(units=32)
     top = with_documented_ports(bit(), bit(), Signs(), Place(config), 3, config)

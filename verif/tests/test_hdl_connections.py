@@ -21,7 +21,17 @@ def test_every_kind_of_connection_works(simulator, tmp_path, monkeypatch, random
         monkeypatch.setenv(name, value)
     monkeypatch.setattr(Leaf, "simulator", simulator)
     leaf = Leaf(everything, everything_arguments, tmp_path)
-    leaf.run_both(random_inputs(leaf, random, 200), settled=4)
+    stimulus = random_inputs(leaf, random, 200)
+    outputs = leaf.run_both(stimulus, settled=4)
+    for cycle in range(4, 200):
+        word, pair = stimulus[cycle - 1]["word"], stimulus[cycle]
+        joined = (word + 3) % 16 | ((word >> 4) + 15) % 16 << 4
+        assert outputs[cycle]["joined"] == joined
+        assert outputs[cycle]["swapped_high"] == pair["pair_low"]
+        assert outputs[cycle]["swapped_low"] == pair["pair_high"]
+        # The previous cycle's carry clears the counter's input.
+        carried = outputs[cycle - 1]["count"] == 0
+        assert outputs[cycle]["count"] == (1 if carried else (word % 16 + 1) % 16)
 
 
 def test_modules_ports_and_instances(tmp_path):
