@@ -56,7 +56,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     all_copies = [Copies() for _ in range(count)]
     copies_words = [copies.word for copies in all_copies]
     latest_copies, read_copies = Copies(), Copies()
-    next_live, bank = (unsigned(BANK_BITS) for _ in range(2))
+    bank = unsigned(BANK_BITS)
     kept_0, kept_1 = bit(), bit()
 
     sorted_rect = rect_of(config)
@@ -175,17 +175,11 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     def find_copies():
         latest_copies.word.next = copies_words[latest_index]
 
-    # The live bank after this cycle. No commit comes while a rectangle is stored.
-    @always_comb
-    def look_ahead():
-        next_live.next = latest_copies.live
-        if bus.go_live:
-            next_live.next = latest_copies.pending
-
+    # StartScreen makes the pending bank live, so these two are enough. No commit comes while a rectangle is stored.
     @always_comb
     def find_kept():
-        kept_0.next = (latest_copies.pending == 0) or (next_live == 0)
-        kept_1.next = (latest_copies.pending == 1) or (next_live == 1)
+        kept_0.next = (latest_copies.pending == 0) or (latest_copies.live == 0)
+        kept_1.next = (latest_copies.pending == 1) or (latest_copies.live == 1)
 
     @always_comb
     def choose_place():
