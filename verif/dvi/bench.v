@@ -30,6 +30,13 @@ module dvi_bench;
 
     `define LINK device.top.board.serialiser
 
+    // Changes near the edge that samples them arrive a cycle early, or not, in the synchroniser of the two clocks.
+    always @(posedge device.top.board.shift_clk) begin
+        #0.1;
+        if ($random % 2)
+            `LINK.arriving = `LINK.held_pixel;
+    end
+
     always @(`LINK.blue_lane.held, `LINK.green_lane.held, `LINK.red_lane.held) begin
         changed = $realtime;
         if (recording && changed - taken < still)
@@ -37,7 +44,7 @@ module dvi_bench;
     end
 
     always @(posedge device.top.board.shift_clk)
-        if (recording && (`LINK.blue_lane.load || `LINK.green_lane.load || `LINK.red_lane.load)) begin
+        if (recording && `LINK.blue_lane.load_here) begin
             taken = $realtime;
             if (taken - changed < still)
                 unsteady = unsteady + 1;

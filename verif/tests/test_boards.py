@@ -264,14 +264,15 @@ LINKED = ".blue({}),\n    .green(green),\n    .red({}),\n    .pixel(pixel),\n   
         (TOP, LINKED.format("blue", "red"), LINKED.format("red", "blue"), "carries control bits"),
         (LANE, ".bits(pair)", ".bits({pair[0], pair[1]})", "control symbols"),
         (SERIALISER, "symbol(red)", "symbol({red[8:0], red[9]})", "different bits"),
-        (LANE, "THIRD = 5'b01000", "THIRD = 5'b00010", "change while they are sampled"),
+        (SERIALISER, "DETECTED = 5'b00001", "DETECTED = 5'b00100", "change while they are sampled"),
+        (SERIALISER, "!phase[2] && !phase[3] && !phase[4]", "!phase[3]", "five ones and five zeros"),
         (SERIALISER, "10'b0000011111", "10'b0000111111", "five ones and five zeros"),
         (CLOCKS, ".CLK_DIV(10)", ".CLK_DIV(8)", "change while they are sampled"),
         (ENCODER, "symbol[9] <= invert", "symbol[9] <= !invert", ""),
         (ENCODERS, "syncs = {vga_vs, vga_hs}", "syncs = {vga_hs, vga_hs}", "lines|frames|VS"),
         (ENCODERS, ".data(vga_g)", ".data(vga_r)", ""),
     ],
-    ids=["channels", "bits", "alignment", "crossing", "clock", "pll", "flag", "syncs", "colour"],
+    ids=["channels", "bits", "alignment", "crossing", "jitter", "clock", "pll", "flag", "syncs", "colour"],
 )
 def test_a_broken_link_is_noticed(design, tmp_path, file, right, wrong, complaint):
     if complaint:
