@@ -147,9 +147,6 @@ def _initial(module: Module, ports: Mapping[str, SignalType]) -> list[int]:
 def _connections(child: Block, module: Module, parent_ports: Mapping[str, SignalType]) -> dict[str, Connection]:
     """Return what an instance's ports connect to in its parent."""
     signals = block_ports(child)
-    # Set by `rests_on`.
-    if (clock := getattr(child, "verilog_clk", None)) is not None:
-        signals["clk"] = clock
     passed_on = {id(signal) for signal in parent_ports.values()}
     connections: dict[str, Connection] = {}
     for port in module.ports:

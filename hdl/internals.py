@@ -17,7 +17,7 @@ from myhdl._extractHierarchy import _getMemInfo
 from myhdl._instance import _Instantiator as Process
 from myhdl._ShadowSignal import _ShadowSignal as ShadowSignal
 from myhdl._ShadowSignal import _SliceSignal as SliceSignal
-from myhdl._Signal import Constant
+from myhdl._Signal import Constant, _PosedgeWaiterList
 from myhdl._Signal import _Signal as SignalType
 from myhdl._simulator import _signals as all_signals
 from myhdl.conversion import _toVerilog as to_verilog
@@ -29,9 +29,9 @@ SOURCE_READERS = tuple((importlib.import_module(f"myhdl.{name}"), "_dedent") for
 """Modules and names of the function that MyHDL calls to read a process's source."""
 
 __all__ = [
-    "SOURCE_READERS", "Block", "Constant", "EnumItemType", "Process", "ShadowSignal", "SignalType", "SignedSlice",
-    "SliceSignal", "all_signals", "analysed", "assigned", "bits_of", "operands_of", "printed", "set_name", "slices_of",
-    "states_by_name", "states_of", "vhdl_keywords",
+    "SOURCE_READERS", "Block", "Constant", "DerivedClock", "EnumItemType", "Process", "ShadowSignal", "SignalType",
+    "SignedSlice", "SliceSignal", "all_signals", "analysed", "assigned", "bits_of", "operands_of", "printed",
+    "set_name", "slices_of", "states_by_name", "states_of", "vhdl_keywords",
 ]  # fmt: skip
 
 
@@ -51,6 +51,23 @@ class SignedSlice(SliceSignal):
             bits = int(word.val) >> low & (2 << high - low) - 1
             set_next(self, (bits ^ sign) - sign)
             yield word
+
+
+class DerivedClock(SignalType):
+    """A clock that given Verilog derives from another one, whose rising edges it has in MyHDL's simulation."""
+
+    class _Edges(_PosedgeWaiterList):
+        def __init__(self, clock: SignalType, source: SignalType):
+            super().__init__(clock)
+            self._source = source
+
+        def append(self, waiter: Any) -> None:
+            self._source.posedge.append(waiter)
+
+    def __init__(self, source: SignalType):
+        """Create it from its source, which has the same edges or more."""
+        super().__init__(bool(0))
+        self._posedgeWaiters = self._Edges(self, source)
 
 
 def bits_of(part: SliceSignal) -> tuple[SignalType, int, int]:

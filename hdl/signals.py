@@ -3,7 +3,7 @@
 
 from myhdl import ConcatSignal, ResetSignal, Signal, intbv
 
-from raycaster.hdl.internals import SignalType
+from raycaster.hdl.internals import DerivedClock, SignalType
 
 
 class Signed(int):
@@ -40,6 +40,14 @@ def tied(value: int, like: int | SignalType) -> Tied:
 def unconnected(like: int | SignalType) -> Unconnected:
     """Return a signal for an instance's output that nothing reads; `like` as for `initial`."""
     return Unconnected(initial(0, like))
+
+
+def derived_clock(clk: SignalType) -> DerivedClock:
+    """Return a clock that given Verilog, such as a clock gate, derives from clk; in MyHDL it rises with clk.
+
+    A clock that a process derived would rise only after the registers of clk had changed.
+    """
+    return DerivedClock(clk)
 
 
 def bits_for(count: int) -> int:

@@ -19,16 +19,6 @@ def clock_gate(clk, awake, gated_clk):
     Args:
         clk: the clock.
         awake: flag, from registers of clk; low when the clock may stop.
-        gated_clk: output clock; connected by rests_on only.
+        gated_clk: output; a `derived_clock` of clk.
     """
     return ()
-
-
-def rests_on(gated_clk, *blocks) -> None:
-    """Connect the `clk` of these blocks to a clock_gate's output in their parent's Verilog.
-
-    In MyHDL they keep the clock of their arguments: a derived clock would rise only after the registers of its source
-    clock had changed.
-    """
-    for one in blocks:
-        one.verilog_clk = gated_clk

@@ -6,12 +6,12 @@ from myhdl import always_comb, block, instances
 from raycaster.buses import BUSES
 from raycaster.configuration import Configuration
 from raycaster.engines import BEAM
-from raycaster.hdl.signals import bit, tied, unconnected, unsigned
+from raycaster.hdl.signals import bit, derived_clock, tied, unconnected, unsigned
 from raycaster.registers import address_bits
 from raycaster.rtl.beam.beam_renderer import beam_renderer
 from raycaster.rtl.bus.avalon_interface import avalon_interface
 from raycaster.rtl.bus.buses import BRIDGES
-from raycaster.rtl.common.clock_gate import clock_gate, rests_on
+from raycaster.rtl.common.clock_gate import clock_gate
 from raycaster.rtl.common.interfaces import AvalonPort, Picture, Progress, Rects, SceneBus
 from raycaster.rtl.common.records import camera_of
 from raycaster.rtl.common.widths import WORD_BITS
@@ -47,13 +47,15 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
     picture, camera, rects, progress = Picture(), camera_of(config), Rects(config), Progress()
     camera_readback, rect_readback = unsigned(WORD_BITS), unsigned(WORD_BITS)
     bad_rectangle = bit()
+    resting = config.facts.line_buffered and not fixed
+    scene_clk = derived_clock(clk) if resting else clk
 
     if fixed:
         rect_readback, bad_rectangle = tied(0, WORD_BITS), tied(0, 1)
         rects.usable = tied((1 << config.rectangles) - 1, rects.usable)
         rectangles = rect_rom(clk, rects, config)
     else:
-        rectangles = rect_mem(clk, reset, bus, rect_readback, bad_rectangle, rects, config)
+        rectangles = rect_mem(scene_clk, reset, bus, rect_readback, bad_rectangle, rects, config)
     if fixed and fixed.camera:
         camera_readback = tied(0, WORD_BITS)
         camera.tie(fixed.camera_fields)
@@ -64,7 +66,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
     else:
         if not config.facts.line_buffered and config.reflections == 0:
             picture.reflections = unconnected(picture.reflections)  # without reflections it does not read their number
-        position = camera_mem(clk, reset, bus, camera_readback, camera, config)
+        position = camera_mem(scene_clk, reset, bus, camera_readback, camera, config)
     if config.bus in BRIDGES:
         avs_s0, name = AvalonPort(len(bus.address)), BUSES[config.bus].port
         port = {"s_axi": s_axi, "wb": wb, "s_apb": s_apb}[name]
@@ -74,15 +76,14 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         bad_rectangle=bad_rectangle, picture=picture, progress=progress, config=config,
     )  # fmt: skip
     # A write, a commit and StartScreen each take one clock of the scene's memories, however late the next clock comes.
-    if config.facts.line_buffered and not fixed:
-        scene_awake, scene_clk = bit(), bit()
+    if resting:
+        scene_awake = bit()
 
         @always_comb
         def wake():
             scene_awake.next = reset or bus.write or bus.commit or bus.go_live or progress.busy
 
         gate = clock_gate(clk, awake=scene_awake, gated_clk=scene_clk)
-        rests_on(scene_clk, rectangles, position)
     renderer = RENDERERS.get(config.engine, ray_caster_renderer)(
         clk, reset, picture=picture, camera=camera, rects=rects, progress=progress, vga=vga, config=config
     )

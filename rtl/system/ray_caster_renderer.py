@@ -4,8 +4,8 @@
 from myhdl import always, always_comb, always_seq, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import bit, bits_for, unsigned
-from raycaster.rtl.common.clock_gate import clock_gate, rests_on
+from raycaster.hdl.signals import bit, bits_for, derived_clock, unsigned
+from raycaster.rtl.common.clock_gate import clock_gate
 from raycaster.rtl.common.interfaces import Place, Scan
 from raycaster.rtl.common.records import Pixel
 from raycaster.rtl.common.widths import CYCLE_BITS, pixel_bits, unit_bits
@@ -42,7 +42,7 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
     place, scan, pixel = Place(config), Scan(), Pixel(config.colour_bits)
     line_buf_sel, enable, done, rendering, handed_over = (bit() for _ in range(5))
     restart, reset_delay, reset_ray_caster = bit(), bit(), bit()
-    caster_awake, caster_clk = bit(), bit()
+    caster_awake, caster_clk = bit(), derived_clock(clk)
     pixels = unsigned(units * width)
     read_offset, read_unit = unsigned(bits_for(groups)), unsigned(unit_bits(config))
     sections = [unsigned(width) for _ in range(units)]
@@ -53,11 +53,10 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
         clk=clk, reset=reset, scan=scan, pixel=pixel, vga=vga, screen=config.screen_geometry, lead=int(one_clock)
     )  # fmt: skip
     caster = ray_caster(
-        clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, place=place, camera=camera, picture=picture,
+        clk=caster_clk, reset_ray_caster=reset_ray_caster, enable=enable, place=place, camera=camera, picture=picture,
         rects=rects, done=done, pixels=pixels, config=config,
     )  # fmt: skip
     gate = clock_gate(clk, awake=caster_awake, gated_clk=caster_clk)
-    rests_on(caster_clk, caster)
     buffers = [
         line_buffer(
             clk=clk, write=done, line_buf_sel=line_buf_sel, write_offset=place.column_offset,

@@ -9,8 +9,8 @@ from raycaster.hdl.errors import UserError
 from raycaster.hdl.given import given_verilog, load_words
 from raycaster.hdl.hierarchy import Port
 from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import bit, unsigned
-from raycaster.rtl.common.clock_gate import clock_gate, rests_on
+from raycaster.hdl.signals import bit, derived_clock, unsigned
+from raycaster.rtl.common.clock_gate import clock_gate
 
 ADDER = """// Adds, a cycle late.
 module adder #(parameter STEP = 1, parameter WIDTH = 8) (
@@ -75,8 +75,8 @@ def test_given_verilog_stands_in_the_design_as_it_is(adder, tmp_path):
 
 
 @block
-def hold(clk, value, held):
-    @always(clk.posedge)
+def hold(clock, value, held):
+    @always(clock.posedge)
     def take():
         held.next = value
 
@@ -86,12 +86,11 @@ def hold(clk, value, held):
 @block
 def two_clocks(clk, awake, value, steady, resting):
     """A register on the free-running clock, and one on a clock that rests in the cycle after one without `awake`."""
-    awake_now, resting_clk = bit(), bit()
+    awake_now, resting_clk = bit(), derived_clock(clk)
     waking = hold(clk, awake, awake_now)
     going_on = hold(clk, value, steady)
-    at_rest = hold(clk, value, resting)
+    at_rest = hold(resting_clk, value, resting)
     gate = clock_gate(clk, awake_now, resting_clk)
-    rests_on(resting_clk, at_rest)
 
     return waking, going_on, at_rest, gate
 
