@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: MIT
 // A first simulation in your own tools: does the design answer on the bus, and does it draw lines of the right length?
-// It prints PASS or FAIL and ends. Checking the picture takes a bench with a model of it.
+// It prints one verdict, PASS or FAIL, and ends. Checking the picture takes a bench with a model of it.
 
 `timescale 1ns / 1ns
 
 module smoke_bench #(
-    parameter ADDRESS_BITS = 6,     // width of the bus's word address
-    parameter COLOUR_BITS = 8,      // bits per channel, of all pixels in a clock
-    parameter H_TOTAL = 800,        // pixel clocks per line, blanking included
-    parameter H_SYNC = 96,          // pixel clocks of the HS pulse
+    // The values are those of the design that was written together with this bench.
+    parameter ADDRESS_BITS = 0,     // width of the bus's word address
+    parameter COLOUR_BITS = 0,      // bits per channel, of all pixels in a clock
+    parameter H_TOTAL = 0,          // pixel clocks per line, blanking included
+    parameter H_SYNC = 0,           // pixel clocks of the HS pulse
     parameter HS_ACTIVE = 0,        // level of HS in the pulse
     parameter SIZE = 0              // expected value of the register with the design's size
 ) ();
     localparam IDENTIFICATION = 0, SIZE_ADDRESS = 3;
     localparam MAGIC = 32'h52415943;
     localparam LINES = 3;
+    localparam PATIENCE = 2 * H_TOTAL * (LINES + 1);    // clocks, at most two per pixel clock
 
     reg clk = 1'b0, reset = 1'b1;
     always #10 clk = ~clk;
@@ -106,20 +108,24 @@ module smoke_bench #(
         .vga_clk(vga_clk)
     );
 
-    integer faults = 0;
+    integer faults = 0, waited = 0;
 
     task expect_word(input [ADDRESS_BITS-1:0] at, input [31:0] expected);
         begin
             @(negedge clk) begin
                 address = at;
                 read = 1'b1;
+                waited = 0;
             end
             #1;
-            while (!taken) @(negedge clk);
+            while (taken !== 1'b1 && waited < PATIENCE) @(negedge clk) waited = waited + 1;
             if (!HOLD) @(negedge clk) read = 1'b0;
-            while (answered !== 1'b1) @(negedge clk);
-            if (readdata !== expected) begin
-                $display("FAIL: address %0d reads %h, expected %h", at, readdata, expected);
+            while (answered !== 1'b1 && waited < PATIENCE) @(negedge clk) waited = waited + 1;
+            if (waited >= PATIENCE) begin
+                $display("address %0d: no answer in %0d clocks", at, PATIENCE);
+                faults = faults + 1;
+            end else if (readdata !== expected) begin
+                $display("address %0d reads %h, expected %h", at, readdata, expected);
                 faults = faults + 1;
             end
             if (HOLD) @(negedge clk) read = 1'b0;
@@ -133,7 +139,7 @@ module smoke_bench #(
     always @(posedge vga_clk) begin
         if (hs_active && !hs_was_active) begin
             if (lines > 0 && (pixels != H_TOTAL || pulse != H_SYNC)) begin
-                $display("FAIL: a line of %0d pixels, %0d of them sync; expected %0d and %0d", pixels, pulse, H_TOTAL,
+                $display("a line of %0d pixels, %0d of them sync; expected %0d and %0d", pixels, pulse, H_TOTAL,
                     H_SYNC);
                 faults = faults + 1;
             end
@@ -151,13 +157,16 @@ module smoke_bench #(
         reset = 1'b0;
         expect_word(IDENTIFICATION, MAGIC);
         expect_word(SIZE_ADDRESS, SIZE);
-        repeat (2 * H_TOTAL * (LINES + 1)) @(negedge clk);
+        repeat (PATIENCE) @(negedge clk);
         if (lines < LINES) begin
-            $display("FAIL: %0d lines, expected %0d or more", lines, LINES);
+            $display("%0d lines, expected %0d or more", lines, LINES);
             faults = faults + 1;
         end
-        if (faults != 0) $stop;     // makes simulators that run unattended end in an error
-        $display("PASS: %0d lines, and the bus answers", lines);
+        if (faults == 0) $display("PASS: %0d lines, and the bus answers", lines);
+        else begin
+            $display("FAIL: %0d faults", faults);
+            $stop;                  // makes simulators that run unattended end in an error
+        end
         $finish;
     end
 endmodule

@@ -7,11 +7,12 @@ These are file lists, constraints, waivers, an instantiation template, and a fir
 from __future__ import annotations
 
 import re
-import shutil
 from collections.abc import Sequence
+from fnmatch import fnmatch
 from importlib.metadata import version
 from pathlib import Path
 
+from raycaster.buses import OWN
 from raycaster.configuration import OPTIONS, Configuration
 from raycaster.convert import ip_xact
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM, component
@@ -52,14 +53,54 @@ def write_take_home(config: Configuration, prefix: str, modules: Sequence[Module
     elif config.bus in ip_xact.BUS_TYPES:
         (directory / ip_xact.IP_XACT).write_text(ip_xact.component(config, modules[-1].ports, sources))
     write_header(config.table, directory / HEADER)
-    shutil.copyfile(WAIVERS, directory / f"{top}.vlt")
+    (directory / f"{top}.vlt").write_text(waivers(sources, prefix))
     (directory / BENCHES).mkdir()
-    define = "" if config.bus == "avalon" else f"`define BUS_{config.bus.upper()}\n"
-    (directory / BENCHES / SMOKE_BENCH.name).write_text(define + SMOKE_BENCH.read_text().replace(TOP, top))
+    (directory / BENCHES / SMOKE_BENCH.name).write_text(_bench(config, top))
     path = directory / f"{top}.v"
     text = path.read_text()
     path.write_text(text.replace(f"{config.name}\n", f"{config.name}\n{_description(config)}", 1))
     (directory / f"{top}.veo").write_text(_template(config, top, text))
+
+
+def waivers(sources: Sequence[str], prefix: str = "") -> str:
+    """Return Verilator's waivers for these files alone; a pattern of file names would also match a user's files.
+
+    Args:
+        sources: names of the design's files.
+        prefix: prefix of most of them, which `WAIVERS` leaves out.
+    """
+    head, *paragraphs = WAIVERS.read_text().rstrip("\n").split("\n\n")
+    for paragraph in paragraphs:
+        lines = []
+        for line in paragraph.splitlines():
+            if not line.startswith("lint_off"):
+                lines.append(line)
+                continue
+            before, pattern, after = re.split(r'-file "(.*?)"', line)
+            own = (name for name in sources if fnmatch(name, pattern) or fnmatch(name, prefixed(pattern, prefix)))
+            # A file's name may be given with or without a folder.
+            lines += [f'{before}-file "{place}{name}"{after}' for name in own for place in ("", "*/")]
+        if lines[-1].startswith("lint_off"):
+            head += "\n\n" + "\n".join(lines)
+    return head + "\n"
+
+
+def _bench(config: Configuration, top: str) -> str:
+    """Return the bench, whose parameters have the values of the design."""
+    horizontal = config.screen_geometry.beats
+    parameters = {
+        "ADDRESS_BITS": address_bits(config.table),
+        "COLOUR_BITS": config.colour_bits * config.pixels,
+        "H_TOTAL": horizontal.total,
+        "H_SYNC": horizontal.sync,
+        "HS_ACTIVE": int(horizontal.active_high),
+        "SIZE": size_word(config),
+    }
+    text = SMOKE_BENCH.read_text().replace(TOP, top)
+    for name, value in parameters.items():
+        text = re.sub(rf"(parameter {name} =) 0(,?) *( //)", rf"\g<1> {value}\g<2> \g<3>", text)
+    bus = f"BUS_{config.bus.upper()}"
+    return text if config.bus == OWN else f"`define {bus}\n{text}`undef {bus}\n"
 
 
 def _description(config: Configuration) -> str:
@@ -137,20 +178,7 @@ create_generated_clock -name vga_clk -source [get_ports clk] {relation} [get_por
 
 def _core(config: Configuration, top: str, sources: Sequence[str]) -> str:
     """Return a FuseSoC core (CAPI2) that lints, simulates and synthesises the files in place."""
-    horizontal = config.screen_geometry.beats
-    parameters = {
-        "ADDRESS_BITS": address_bits(config.table),
-        "COLOUR_BITS": config.colour_bits * config.pixels,
-        "H_TOTAL": horizontal.total,
-        "H_SYNC": horizontal.sync,
-        "HS_ACTIVE": int(horizontal.active_high),
-        "SIZE": size_word(config),
-    }
     files = "".join(f"      - {name}\n" for name in sources)
-    declared = "".join(
-        f"  {name}:\n    datatype: int\n    paramtype: vlogparam\n    default: {value}\n"
-        for name, value in parameters.items()
-    )
     return f"""CAPI=2:
 # SPDX-License-Identifier: MIT
 name: raycaster::{top}:{version("raycaster")}
@@ -188,7 +216,6 @@ targets:
     filesets: [rtl, bench]
     toplevel: {SMOKE_BENCH.stem}
     default_tool: icarus
-    parameters: [{", ".join(parameters)}]
     tools:
       icarus:
         iverilog_options: [-g2005]
@@ -205,6 +232,4 @@ targets:
       yosys:
         arch: ecp5
         output_format: json
-
-parameters:
-{declared}"""
+"""
