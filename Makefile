@@ -2,6 +2,9 @@
 # The entry point from a clone. Each target sets up the environment it needs and calls the program `raycaster` with
 # make's variables unchanged: `make sim ENGINE=beam SCENE=boxes` runs `raycaster sim ENGINE=beam SCENE=boxes`.
 
+ifeq ($(wildcard cli/commands.py),)
+$(error error: make must run in the folder of $(MAKEFILE_LIST); use make -C with that folder)
+endif
 PYTHON3 ?= python3
 VENV := .venv
 PYTHON := $(VENV)/bin/python
@@ -71,5 +74,6 @@ install = $(if $1,if [ ! -e $(VENV)/$1 ]; then echo "installing $1 (usually a mi
 $(VENV)/base: pyproject.toml constraints.txt
 	@$(PYTHON3) -c 'import sys, ensurepip, venv; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { echo \
 	    "error: $(PYTHON3) is not Python 3.11 or newer with its venv module (Debian: apt-get install python3-venv)" >&2; exit 2; }
+	@$(PYTHON3) raycaster/places.py
 	@echo "making a Python environment in $(VENV)/ (usually a minute)" && $(PYTHON3) -m venv --clear $(VENV) \
 	    && $(ADD) '.$(addsuffix ],$(addprefix [,$(EXTRAS)))' && touch $@ $(addprefix $(VENV)/,$(EXTRAS))

@@ -10,7 +10,7 @@ with the Yosys that the variable YOSYS names. To get Verilog, run:
 
 from __future__ import annotations
 
-import sys
+import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -23,6 +23,7 @@ from amaranth.lib.wiring import Component, In, Out
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.take_home import PREFIX, TOP
 from raycaster.convert.write import write_verilog
+from raycaster.options import run_command
 from raycaster.program import scene_words
 from raycaster.registers import address_bits
 from raycaster.scene import Scene, load_scene
@@ -118,6 +119,15 @@ def convert(scene: Scene, config: Configuration, directory: Path) -> list[Path]:
     return [*files, top]
 
 
-if __name__ == "__main__":
-    for path in convert(load_scene(sys.argv[1]), configure(bus="wishbone"), Path(sys.argv[2])):
+def main() -> None:
+    """Write the Verilog of a scene file, and print the paths."""
+    parser = argparse.ArgumentParser(description="Write the Verilog of a picture frame for one scene.")
+    parser.add_argument("scene", type=Path, help="scene file, such as examples/two_boxes.toml")
+    parser.add_argument("directory", type=Path, help="directory for the Verilog")
+    arguments = parser.parse_args()
+    for path in convert(load_scene(arguments.scene), configure(bus="wishbone"), arguments.directory):
         print(path)
+
+
+if __name__ == "__main__":
+    run_command(main)

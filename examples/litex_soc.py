@@ -15,6 +15,7 @@ from pathlib import Path
 
 from raycaster.configuration import Configuration, configure
 from raycaster.memory_map import MEMORY_BYTES
+from raycaster.options import run_command
 from raycaster.rtl.common.interfaces import vga_of
 from raycaster.sw.firmware import DRIVER, START, build_firmware
 
@@ -86,9 +87,14 @@ def write(soc: RayCasterSoC, directory: Path) -> list[Path]:
     return [*(Path(source) for source, *_ in soc.platform.sources), top]
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Write a SoC, and print the paths of its Verilog."""
     parser = argparse.ArgumentParser(description="Write the Verilog of a SoC with the ray tracer.")
     parser.add_argument("directory", type=Path, help="output: Verilog, LiteX's headers and the memory's contents")
     output = parser.parse_args().directory
     for path in write(make_soc(configure(bus="wishbone", engine="exact"), output), output):
         print(path)
+
+
+if __name__ == "__main__":
+    run_command(main)

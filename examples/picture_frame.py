@@ -8,7 +8,7 @@ After reset a small Avalon-MM host writes one scene from a ROM, and the monitor 
 
 from __future__ import annotations
 
-import sys
+import argparse
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ from raycaster.convert.vocabulary import VOCABULARY
 from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.hierarchy import convert_hierarchy
 from raycaster.hdl.signals import tied, unconnected
+from raycaster.options import run_command
 from raycaster.program import scene_words
 from raycaster.registers import address_bits
 from raycaster.rtl.common.interfaces import AvalonPort
@@ -91,6 +92,15 @@ def convert(scene: Scene, config: Configuration, directory: Path) -> list[Path]:
     return [module.path for module in convert_hierarchy(top, directory, "// {module}", vocabulary=VOCABULARY)]
 
 
-if __name__ == "__main__":
-    for path in convert(load_scene(sys.argv[1]), configure(), Path(sys.argv[2])):
+def main() -> None:
+    """Write the Verilog of a scene file, and print the paths."""
+    parser = argparse.ArgumentParser(description="Write the Verilog of a picture frame for one scene.")
+    parser.add_argument("scene", type=Path, help="scene file, such as examples/two_boxes.toml")
+    parser.add_argument("directory", type=Path, help="directory for the Verilog")
+    arguments = parser.parse_args()
+    for path in convert(load_scene(arguments.scene), configure(), arguments.directory):
         print(path)
+
+
+if __name__ == "__main__":
+    run_command(main)

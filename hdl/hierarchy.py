@@ -8,6 +8,7 @@ rest: ports, signals and instances. Blocks of one function share a module if the
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +16,7 @@ from typing import Any
 
 from raycaster.hdl.contents import Connection, Contents, Instance, Loading, Module, Port, check_keyword, refusal
 from raycaster.hdl.elaboration import elaboration
-from raycaster.hdl.errors import faults_in_one_line
+from raycaster.hdl.errors import UserError, faults_in_one_line
 from raycaster.hdl.given import GivenVerilog, load_words
 from raycaster.hdl.internals import Block, SignalType, bits_of
 from raycaster.hdl.records import Field, block_arguments, block_ports, signals_in
@@ -53,6 +54,8 @@ def convert_hierarchy(
         UserError: a block cannot be a module: see `raycaster.hdl.contents.Contents`; or given Verilog lists an output
             that is not an argument of its block, lacks its module, or has the name of another block.
     """
+    if sys.flags.optimize > 1:
+        raise UserError("python -OO leaves out the docstrings, which become the Verilog's comments; run it without -OO")
     with elaboration(), faults_in_one_line():
         converter = _Converter(directory, header, prefix, vocabulary or {})
         module = converter.module_of(top)

@@ -24,7 +24,8 @@ LONGEST_SHOWN = 60
 
 EXPECTED: Mapping[str, str] = {
     "literal_error": "{expected}",
-    **dict.fromkeys(("int_type", "int_parsing", "int_parsing_size", "int_from_float"), "a whole number"),
+    **dict.fromkeys(("int_type", "int_parsing", "int_from_float"), "a whole number"),
+    "int_parsing_size": "a number of fewer digits",
     **dict.fromkeys(("float_type", "float_parsing"), "a number"),
     **dict.fromkeys(("bool_type", "bool_parsing"), "1 or 0"),
     "string_type": "a string",

@@ -6,11 +6,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, ValidationError
+from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic.dataclasses import dataclass as validated_dataclass
 from pydantic.fields import FieldInfo
+from pydantic_core import PydanticKnownError
 
 from raycaster.buses import BUSES, OWN
 from raycaster.complaints import refusal
@@ -34,6 +35,18 @@ SLOW_HZ = 50_000_000
 """Clock frequency that designs meet on the boards' chips without registers on long wires."""
 
 
+def _whole(value: object) -> object:
+    """Return a value unless it has a decimal point, as pydantic takes 12.0 for 12; scene files refuse it, too."""
+    if isinstance(value, float) or (isinstance(value, str) and "." in value):
+        raise PydanticKnownError("int_type")
+    return value
+
+
+if TYPE_CHECKING:
+    Whole = int
+else:
+    Whole = Annotated[int, BeforeValidator(_whole)]
+
 if TYPE_CHECKING:
     EngineName = BusName = str
 else:
@@ -56,29 +69,29 @@ class Options:
     """
 
     engine: EngineName = Field(SEED.name, description=f"engine that computes the rays: {listed(ENGINES)}")
-    units: int | None = Field(
+    units: Whole | None = Field(
         None,
         ge=1,
         description="parallel ray units, a divisor of the columns; by default 32 (seed), the fewest that meet the row "
         "budget (exact) or one per pixel of a clock (beam)",
     )
-    rectangles: int = Field(12, ge=1, le=MOST_RECTANGLES, description="capacity of the scene memory, in rectangles")
-    reflections: int = Field(1, ge=0, le=MOST_REFLECTIONS, description="most reflections per ray")
-    rows: int | None = Field(
+    rectangles: Whole = Field(12, ge=1, le=MOST_RECTANGLES, description="capacity of the scene memory, in rectangles")
+    reflections: Whole = Field(1, ge=0, le=MOST_REFLECTIONS, description="most reflections per ray")
+    rows: Whole | None = Field(
         None,
         description="rows of rays: 240 (640x480@60), 200 (640x400@70); seed and exact: 120, 96 or 60 (640x480@60 at "
         "half the clock); beam: 180 (1280x720@60, or 1920x1080 with SCALE=3 or 6)",
     )
-    scale: int | None = Field(
+    scale: Whole | None = Field(
         None,
         description="resolution scale: 1; beam: 1, 2 or 4, by default one ray per monitor pixel; "
         "with 180 rows also 3 or 6 (1920x1080)",
     )
-    pixels: int = Field(1, ge=1, le=2, description="pixels per clock: 1, or 2 (beam, if each has its own column)")
-    fraction_bits: int = Field(0, ge=0, le=8, description="fraction bits of origins, planes and quotients")
+    pixels: Whole = Field(1, ge=1, le=2, description="pixels per clock: 1, or 2 (beam, if each has its own column)")
+    fraction_bits: Whole = Field(0, ge=0, le=8, description="fraction bits of origins, planes and quotients")
     rounding: Rounding = Field("truncate", description="rounding of quotients: truncate or nearest")
-    divider_bits: int | Literal["auto"] = Field("auto", description="quotient bits per cycle: auto, 1, 2 or 3")
-    colour_bits: int = Field(8, ge=1, le=CHANNEL_BITS, description="bits per colour channel on the VGA output")
+    divider_bits: Whole | Literal["auto"] = Field("auto", description="quotient bits per cycle: auto, 1, 2 or 3")
+    colour_bits: Whole = Field(8, ge=1, le=CHANNEL_BITS, description="bits per colour channel on the VGA output")
     screen: Literal["vga", "tiny", "play"] = Field(
         "vga",
         description="screen: vga, tiny (64x48, for slow simulators) or play (320x240 with short frames, beam only)",

@@ -38,6 +38,9 @@ USUAL = ("engine", "rows", "reflections", "screen")
 FROM_MAKE = "RAYCASTER_FROM_MAKE"
 """Environment variable with which the Makefile says that the user typed `make`."""
 
+TYPED = "1"
+"""Its value in the program that make itself has started."""
+
 
 _ELSEWHERE = "choose another place for the output"
 ADVICE = {
@@ -88,6 +91,7 @@ class CommandParser(argparse.ArgumentParser):
             UserError: one line that names the wrong word.
         """
         words = sys.argv[1:] if args is None else args
+        self._refuse_environment(words)
         given = [one for word in words for one in self._translated(str(word))]
         self._refuse_unknown(given)
         arguments = super().parse_intermixed_args(given)
@@ -95,8 +99,28 @@ class CommandParser(argparse.ArgumentParser):
         return arguments
 
     def error(self, message: str) -> NoReturn:
-        """Raise one line instead of printing argparse's usage."""
+        """Raise one line instead of printing argparse's usage; Python reads no number of thousands of digits."""
+        message = re.sub(r"'[+-]?(\d{20,})'", lambda number: f"a number of {len(number[1]):,} digits", message)
         raise UserError(f"{message}; see {_program()} {self.name} --help")
+
+    def _refuse_environment(self, words: Sequence[str]) -> None:
+        """Refuse options of this command in the environment of make, where make has variables but the program none.
+
+        Raises:
+            UserError: names the first one, and the command to type.
+        """
+        if os.environ.get(FROM_MAKE) != TYPED:
+            return
+        os.environ[FROM_MAKE] = "called"  # programs that this one starts get their options from it
+        for name in ("SCENE", *map(_variable, self._option_string_actions)):
+            value = os.environ.get(name)
+            if value and not any(word.startswith(f"{name}=") for word in words):
+                target = f"make {self.name.split()[-1]}"
+                typed = " ".join([target, *map(shlex.quote, words), f"{name}={shlex.quote(value)}"])
+                raise UserError(
+                    f"{name}={value} is in the environment, but {target} takes only what follows it; run {typed}, or "
+                    f"unset {name}"
+                )
 
     def _refuse_unknown(self, words: Sequence[str]) -> None:
         """Refuse unknown options, before their values are taken for scenes.
@@ -253,6 +277,11 @@ def as_options(config: Configuration) -> list[str]:
 def run_command(main: Callable[[], int | None]) -> NoReturn:
     """Run a command's body; errors that the user can fix become one line on standard error and exit code 2."""
     try:
+        if sys.flags.optimize:
+            raise UserError(
+                "Python's option -O and PYTHONOPTIMIZE leave out checks, and texts that become the Verilog's comments; "
+                "run it without them"
+            )
         code = _flushed(main)
     except UserError as error:
         print(f"error: {printable(error, lines=isinstance(error, ToolError))}", file=sys.stderr)

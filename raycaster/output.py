@@ -18,6 +18,7 @@ from rich.protocol import is_renderable
 from rich.text import Text
 
 from raycaster.errors import UserError
+from raycaster.places import shown
 
 MARK = ".raycaster"
 """File that marks a directory as made by a command, so that a later command may remove it."""
@@ -119,10 +120,7 @@ def printable(text: object, *, lines: bool = False) -> str:
         text: text to show.
         lines: True if the text may have several lines.
     """
-    return "".join(
-        one if one.isprintable() or (lines and one == "\n") else one.encode("unicode_escape").decode()
-        for one in str(text)
-    )
+    return shown(text, "\n" if lines else "")
 
 
 class Console(rich.console.Console):

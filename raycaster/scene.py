@@ -8,6 +8,7 @@ import io
 import json
 import math
 import re
+import sys
 import tomllib
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -30,6 +31,7 @@ from pydantic_core import CoreSchema, ErrorDetails
 from raycaster.complaints import LONGEST_SHOWN, did_you_mean
 from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, WORLD_SIZE
 from raycaster.errors import UserError, listed
+from raycaster.places import is_byte
 
 BASIS_SCALE = 256
 """Length of a vector in a camera's basis."""
@@ -63,6 +65,7 @@ COMPLAINTS = {
     "encoding": "is not UTF-8 text; a scene is a TOML file",
     "heading": "head each rectangle with [[rect]]",
     "syntax": "is not TOML at line {number}{line} ({reason})",
+    "digits": "has a number of {count:,} digits at line {number}; no number of a scene has more than 3",
 }
 
 MOST_BYTES = 1_000_000
@@ -175,7 +178,7 @@ if TYPE_CHECKING:
 else:
     PatternName = Literal[*PATTERNS]
 Pattern = Annotated[PatternName, _Check(_choice, f"must be {listed(map(json.dumps, PATTERNS))}", {"choices": PATTERNS})]
-CellSize = Annotated[int, _Check(_choice, "must be 8, 16, 32, 64, 128 or 256", {"choices": CELLS})]
+CellSize = Annotated[int, _Check(_choice, "must be 8, 16, 32, 64, 128 or 256", {"choices": CELLS, "whole": True})]
 Basis = tuple[tuple[int, int, int], tuple[int, int, int], tuple[int, int, int]]
 
 
@@ -307,6 +310,8 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
         SceneError: the file cannot be read, is not TOML, or is not a scene; one line says where and what was expected.
     """
     path = Path(path)
+    if any(map(is_byte, path.stem)):
+        raise SceneError(f"{path}: has a name that is not UTF-8, which the simulators' results cannot have; rename it")
     if not path.stem.strip(".") or _NO_NAME.search(path.stem):
         raise SceneError(
             f"{path}: expected a name that is not all dots and has no control characters, for use in outputs; rename it"
@@ -410,6 +415,9 @@ def dump_scene(scene: Scene) -> str:
 
 def _syntax_complaint(said: str, text: str) -> str:
     """Return one line for an error of tomllib: its place in the text, and what tomllib expected."""
+    if "digits" in said and (long := re.search(rf"\d[\d_]{{{sys.get_int_max_str_digits()},}}", text)):
+        number = text.count("\n", 0, long.start()) + 1
+        return COMPLAINTS["digits"].format(count=len(long[0].replace("_", "")), number=number)
     parts = re.fullmatch(r"(.+) \(at (?:line (\d+), column \d+|end of document)\)", said)
     if parts is None:
         return f"is not TOML: {said}"

@@ -84,4 +84,4 @@ def prepare_wasm(program: str) -> None:
 
 
 def _search_path() -> str:
-    return os.pathsep.join([sysconfig.get_path("scripts"), os.environ.get("PATH", "")])
+    return os.pathsep.join([sysconfig.get_path("scripts"), os.environ.get("PATH", os.defpath)])

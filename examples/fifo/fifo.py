@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A queue of items, in MyHDL with records, interfaces and a Verilog module for each block: python fifo.py DIRECTORY."""
 
-import sys
+import argparse
 from pathlib import Path
 
 from myhdl import always, always_comb, always_seq, block, instances
@@ -125,4 +125,7 @@ def convert(directory: Path) -> list[Path]:
 
 
 if __name__ == "__main__":
-    convert(Path(sys.argv[1]))
+    parser = argparse.ArgumentParser(description="Write the Verilog of a first-in, first-out buffer.")
+    parser.add_argument("directory", type=Path, help="directory for the Verilog")
+    for path in convert(parser.parse_args().directory):
+        print(path)

@@ -152,6 +152,10 @@ MISTAKES = [
                 'pattern = "rows"\ncolour2 = "#000000"\ncell = 48',
                 " cell: must be 8, 16, 32, 64, 128 or 256, not 48",
             ),
+            (
+                'pattern = "rows"\ncolour2 = "#000000"\ncell = 32.0',
+                " cell: must be 8, 16, 32, 64, 128 or 256, not 32.0",
+            ),
             ('pattern = "rows"', ": a pattern has a second colour; give colour2 with rows"),
             ('colour2 = "#000000"', ': colour2 is for a pattern; give pattern = "checker", "rows" or "columns"'),
         )
@@ -251,7 +255,7 @@ def test_too_many_rectangles(tmp_path):
     ("contents", "expected"),
     [
         (b"\xff\xfe", "is not UTF-8 text; a scene is a TOML file"),
-        (b"rows = " + b"9" * 5000, "is not TOML: "),
+        (b"\nrows = " + b"9" * 4999 + b"_0", "has a number of 5,000 digits at line 2; no number of a scene has"),
         (b"rows = " + b"[" * 5000, "is not TOML: "),
     ],
     ids=["bytes", "digits", "brackets"],
