@@ -89,12 +89,12 @@ def _read_elf(path: Path) -> tuple[bytes, dict[str, int]]:
     memory = bytearray(MEMORY_BYTES)
     with path.open("rb") as file:
         elf = ELFFile(file)
+        for segment in elf.iter_segments("PT_LOAD"):
+            start = segment["p_paddr"] - MEMORY
+            memory[start : start + segment["p_filesz"]] = segment.data()
         sections = [section for section in elf.iter_sections() if section["sh_flags"] & SH_FLAGS.SHF_ALLOC]
-        for section in sections:
-            if section["sh_type"] == "SHT_PROGBITS":
-                start = section["sh_addr"] - MEMORY
-                memory[start : start + section["sh_size"]] = section.data()
-        return bytes(memory), {section.name: section["sh_size"] for section in sections}
+        sizes = {section.name: section["sh_size"] for section in sections}
+        return bytes(memory), sizes | {"initial values of .data": sizes[".data"]}
 
 
 def show(sections: dict[str, int], console: Console) -> None:

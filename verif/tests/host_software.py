@@ -29,6 +29,8 @@ CONFIG = configure(engine="exact", screen="tiny", rectangles=12)
 _HEADERS = re.sub(r"//.*", "", "".join(path.read_text() for path in (DRIVER_HEADER, SOFTWARE / "game" / "game.h")))
 SEED = int(re.search(r"GAME_SEED = (\d+)", _HEADERS)[1])
 FIRE = 1 << BUTTON_NAMES.index("fire")
+CORNER = 0b0101
+"""Buttons that move the racket into a corner that the ball never reaches."""
 
 
 def enumeration(name: str) -> type[IntEnum]:

@@ -9,13 +9,15 @@ from pathlib import Path
 import pytest
 import unicorn
 from conftest import called
-from host_software import CONFIG, FIRE, Registers, Session, compile_library
+from elftools.elf.elffile import ELFFile
+from host_software import CONFIG, CORNER, FIRE, Registers, Session, compile_library
+from unicorn import riscv_const
 
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTONS, MEMORY, MEMORY_BYTES, RAY_TRACER, UART, UART_BUSY, c_header
 from raycaster.registers import register_map
 from raycaster.sim.register_model import LiveScene
-from raycaster.sw.firmware import FIRMWARE, SOURCES, Firmware, build_firmware, main
+from raycaster.sw.firmware import FIRMWARE, SOURCES, START, Firmware, build_firmware, main
 from raycaster.sw.play_script import DEMO, load
 from raycaster.tools import ToolError
 
@@ -37,14 +39,7 @@ class Machine:
         instructions: number of instructions before the first frame, and in each frame with its wait for the next.
     """
 
-    def __init__(self, words: Path, script: tuple[int, ...], registers: Registers | None = None):
-        self._script = script
-        self._registers = registers or Registers(CONFIG)
-        self._busy = 0
-        self._block = -1
-        self.said = ""
-        self.frames: list[list[tuple[int, int]]] = []
-        self.instructions = [0]
+    def __init__(self, words: Path, script: tuple[int, ...] = (), registers: Registers | None = None):
         self.uc = uc = unicorn.Uc(unicorn.UC_ARCH_RISCV, unicorn.UC_MODE_RISCV32)
         uc.mem_map(MEMORY, MEMORY_BYTES)
         memory = b"".join(int(line, 16).to_bytes(4, "little") for line in words.read_text().split())
@@ -54,8 +49,24 @@ class Machine:
         uc.mmio_map(BUTTONS, PAGE, self._read_rest, None, self._write_rest, None)
         uc.hook_add(unicorn.UC_HOOK_BLOCK, self._count)
         uc.hook_add(unicorn.UC_HOOK_MEM_READ | unicorn.UC_HOOK_MEM_WRITE, self._check_access)
-        # Until the script or main ends.
-        uc.emu_start(MEMORY, MEMORY_BYTES, count=20_000_000)
+        self.run(script, registers)
+
+    def run(self, script: tuple[int, ...], registers: Registers | None = None) -> None:
+        """Reset everything except the memory, and run until the script or main ends."""
+        self._script = script
+        self._registers = registers or Registers(CONFIG)
+        self._busy = 0
+        self._block = -1
+        self.said = ""
+        self.frames: list[list[tuple[int, int]]] = []
+        self.instructions = [0]
+        self.uc.emu_start(MEMORY, MEMORY_BYTES, count=20_000_000)
+
+    def spoil(self, start: int) -> None:
+        """Fill the memory from an address on, and the processor's registers, with garbage."""
+        self.uc.mem_write(start, b"\xa5" * (MEMORY + MEMORY_BYTES - start))
+        for register in range(riscv_const.UC_RISCV_REG_X1, riscv_const.UC_RISCV_REG_X31 + 1):
+            self.uc.reg_write(register, 0x5A5A5A5A)
 
     def _count(self, uc, address, size, _) -> None:
         self.instructions[-1] += size // 4
@@ -97,7 +108,7 @@ class Machine:
         assert (size, BUTTONS + offset) == (4, UART)
         assert not self._busy
         self._busy = 3
-        self.said += chr(word)
+        self.said += chr(word & 0xFF)
 
 
 def test_the_memory_map_for_c_is_up_to_date():
@@ -125,9 +136,70 @@ def test_the_demo_is_played_as_on_the_host(firmware, tmp_path):
 
 
 def test_a_lost_game_is_reported(firmware):
-    corner = 0b0101
-    machine = Machine(firmware.words, (0, FIRE) + (corner,) * 700)
+    machine = Machine(firmware.words, (0, FIRE) + (CORNER,) * 700)
     assert re.search(r"^game over, score \d+\r$", machine.said, re.M)
+
+
+VARIABLES = """
+#include <stdint.h>
+
+#include "system.h"
+
+static volatile uint32_t letters[] = {'o', 'j'}, count, last;
+
+int main(void) {
+    volatile uint32_t *const uart = (volatile uint32_t *)SYSTEM_UART_BASE;
+    for (; count < 2; count++) {
+        while (*uart != 0) {
+        }
+        *uart = letters[count] + count + last;
+        letters[count] = '!';
+    }
+    last = 1;
+    return 0;
+}
+"""
+"""Program that sends `ok` if its variables start with their initial values and with 0, and changes all of them."""
+
+
+def after_reset(built: Firmware, before: tuple[int, ...] = (), script: tuple[int, ...] = ()) -> tuple[str, list]:
+    """Return what a program says, and its frames, after a reset in the middle that leaves garbage in its variables."""
+    machine = Machine(built.words, before)
+    with built.elf.open("rb") as file:
+        machine.spoil(ELFFile(file).get_section_by_name(".data")["sh_addr"])
+    machine.run(script)
+    return machine.said, machine.frames
+
+
+def test_a_reset_starts_anew(firmware):
+    """A game that is reset in the middle of another one is the same game as after power-up."""
+    script = load(DEMO)[:120]
+    fresh = Machine(firmware.words, script)
+    assert "start" in fresh.said and len(fresh.frames) == len(script)
+    assert after_reset(firmware, (0, FIRE) + (CORNER,) * 90, script) == (fresh.said, fresh.frames)
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("", ""),
+        ("la t0, bss_start", "la t0, bss_end"),
+        ("la t1, bss_end", "la t1, bss_start + 4"),
+        ("sw zero, 0(t0)", "sw t0, 0(t0)"),
+        ("la t0, data_start", "la t0, data_end"),
+        ("la t1, data_end", "la t1, data_start + 4"),
+        ("la t2, data_initial", "la t2, data_start"),
+    ],
+)
+def test_variables_start_with_their_values(tmp_path, right, wrong):
+    """At power-up and after a reset; a fault in the start-up code shows at the latest after the reset."""
+    start, program = tmp_path / START.name, tmp_path / "variables.c"
+    start.write_text(START.read_text().replace(right, wrong))
+    program.write_text(VARIABLES)
+    built = build_firmware(tmp_path / "built", (start, program))
+    assert built.sections[".data"] == built.sections["initial values of .data"] == 8
+    said = [Machine(built.words).said, after_reset(built)[0]]
+    assert (said == ["ok", "ok"]) == (right == wrong), said
 
 
 @pytest.mark.parametrize(
@@ -187,10 +259,17 @@ def test_a_missing_tool_is_one_line(tmp_path, monkeypatch, missing):
     assert not any(tmp_path.iterdir())
 
 
-def test_a_program_that_does_not_compile(firmware, tmp_path):
+@pytest.mark.parametrize(
+    ("variable", "complaint"),
+    [
+        ("int unused;", "unused"),
+        *((f"static volatile char full[{size}]; full[0] = 0;", "the stack needs 2048") for size in (24_000, 40_000)),
+    ],
+)
+def test_a_program_that_does_not_compile(tmp_path, variable, complaint):
     start, program, *others = SOURCES
     broken = tmp_path / "broken.c"
-    broken.write_text(program.read_text().replace("int main(void) {", "int main(void) { int unused;"))
-    with pytest.raises(ToolError, match=r"the compiler failed:\n.*unused"):
+    broken.write_text(program.read_text().replace("int main(void) {", f"int main(void) {{ {variable}"))
+    with pytest.raises(ToolError, match=rf"the compiler failed:\n.*{complaint}"):
         build_firmware(tmp_path / "output", (start, broken, *others))
     assert not (tmp_path / "output").exists()

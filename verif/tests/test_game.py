@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from host_software import (
+    CORNER,
     FIRE,
     Error,
     Frame,
@@ -32,8 +33,6 @@ from raycaster.sw.play_script import DEMO, PlayScriptError, dump, load
 Entry = enumeration("game_entry")
 COURT = {"x": (44, 281), "y": (89, 423), "z": (0, 264)}
 LIVES = 3
-CORNER = 0b0101
-"""Buttons that move the racket into a corner that the ball never reaches."""
 
 
 @pytest.fixture(scope="module")
