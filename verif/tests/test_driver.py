@@ -6,6 +6,7 @@ from __future__ import annotations
 import ctypes
 import re
 import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -353,21 +354,59 @@ def test_every_error_has_its_own_text(library):
     assert not any(text.endswith(".") for text in texts)
 
 
-@pytest.mark.parametrize("standard", ["c99", "c11"])
-@pytest.mark.parametrize("level", ["-O0", "-Os", "-O2"])
-def test_plain_memory_and_no_library(tmp_path, standard, level):
-    """The driver works with its own register access and links without any library."""
-    flags = (f"-std={standard}", level, "-ffreestanding", "-nostdlib", "-Wl,-z,defs")
-    library = compile_library(tmp_path, "raycaster.c", flags=flags)
-    memory = (ctypes.c_uint32 * 64)()
+NIOS_IO = """
+#include <stdint.h>
+#define NIOS_WORD(base, offset) \\
+    (*(volatile uint32_t *)((volatile char *)(base) + ((uint32_t)(offset) <= 252 ? (uint32_t)(offset) : 252)))
+#define IORD_32DIRECT(base, offset) (~NIOS_WORD(base, offset))
+#define IOWR_32DIRECT(base, offset, word) (NIOS_WORD(base, offset) = ~(uint32_t)(word))
+"""
+"""Stand-in for the Nios II's `io.h`: byte offsets, and its registers appear inverted to everything but these macros."""
+
+
+def check_access(directory: Path, nios: bool, *flags: str, driver: Path = SOFTWARE) -> None:
+    """Let the driver probe registers in a memory with its own register access, and write one, without any library."""
+    (directory / "io.h").write_text(NIOS_IO)
+    flags = (*flags, "-ffreestanding", "-nostdlib", "-Wl,-z,defs", f"-I{directory}", *["-D__nios2__"] * nios)
+    library = compile_library(directory, driver / "raycaster.c", flags=flags)
+    seen_as = 0xFFFFFFFF if nios else 0
+    memory = (ctypes.c_uint32 * 64)(*[seen_as] * 64)
     for name in ("id", "version"):
-        memory[MAP[name].address] = MAP[name].reset
-    memory[MAP["size"].address] = MAP["size"].pack(units=4, rectangles=12, rows=240)
+        memory[MAP[name].address] = MAP[name].reset ^ seen_as
+    memory[MAP["size"].address] = MAP["size"].pack(units=4, rectangles=12, rows=240) ^ seen_as
+    before = list(memory)
     device = RayCaster()
     assert library.raycaster_probe(device, memory) == Error.OK
     assert (device.units, device.rectangles, device.rows) == (4, 12, 240)
     assert library.raycaster_set_camera(device, TYPES["raycaster_point"](1, 2, 3)) == Error.OK
-    assert memory[MAP["camera"].address] == MAP["camera"].pack(x=1, y=2, z=3)
+    changed = {address: word ^ seen_as for address, word in enumerate(memory) if word != before[address]}
+    assert changed == {MAP["camera"].address: MAP["camera"].pack(x=1, y=2, z=3)}
+
+
+@pytest.mark.parametrize("nios", [False, True], ids=["plain", "nios"])
+@pytest.mark.parametrize("standard", ["c99", "c11"])
+@pytest.mark.parametrize("level", ["-O0", "-Os", "-O2"])
+def test_own_access_and_no_library(tmp_path, standard, level, nios):
+    check_access(tmp_path, nios, f"-std={standard}", level)
+
+
+@pytest.mark.parametrize(
+    ("nios", "right", "wrong"),
+    [
+        (True, "IOWR_32DIRECT(base, offset, word)", "IOWR_32DIRECT(base, word, offset)"),
+        (True, "IORD_32DIRECT(base, offset)", "IORD_32DIRECT(base, (offset) / 4)"),
+        (True, "#ifdef __nios2__", "#ifdef __nios__"),
+        (False, "((base)[(offset) / 4] = (word))", "((base)[offset] = (word))"),
+        (False, "((base)[(offset) / 4])", "((base)[(offset) / 2])"),
+    ],
+)
+def test_a_fault_in_the_access_is_noticed(tmp_path, nios, right, wrong):
+    for path in SOFTWARE.glob("raycaster*.[ch]"):
+        text = path.read_text()
+        assert right in text or path.name != DRIVER_HEADER.name
+        (tmp_path / path.name).write_text(text.replace(right, wrong))
+    with pytest.raises(AssertionError):
+        check_access(tmp_path, nios, driver=tmp_path)
 
 
 def test_a_cpp_compiler_takes_the_header():
