@@ -25,6 +25,7 @@ from host_software import (
 from raycaster.configuration import configure
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.rays import primary_slopes
+from raycaster.memory_map import BUTTON_NAMES
 from raycaster.registers import register_map
 from raycaster.scene import Camera
 from raycaster.sim.register_model import LiveScene
@@ -32,6 +33,11 @@ from raycaster.sw.play_script import DEMO, PlayScriptError, dump, load
 
 Entry = enumeration("game_entry")
 COURT = {"x": (44, 281), "y": (89, 423), "z": (0, 264)}
+"""Bounds of the court; the ball leaves it at the front."""
+
+MARGIN = {"x": 0, "y": 13, "z": 13}
+"""Least distance of the ball's centre from the walls."""
+
 LIVES = 3
 
 
@@ -62,7 +68,7 @@ def demo(library) -> list[tuple[Frame, Game]]:
 
 def check_in_court(game: Game) -> None:
     for axis, (low, high) in COURT.items():
-        assert low <= getattr(game.ball, axis) / 256 <= high
+        assert low + MARGIN[axis] <= getattr(game.ball, axis) / 256 <= high - MARGIN[axis]
     assert 0 <= game.lives <= LIVES
     assert 1 <= game.level <= 9
 
@@ -140,6 +146,59 @@ def test_a_good_player_sees_every_level(session):
     assert all(slow < fast for slow, fast in pairwise(speeds.values()))
 
 
+@pytest.mark.parametrize(("level", "sways"), [(1, (0, 0)), (2, (135, 0)), (3, (131, 96)), (9, (107, 72))])
+def test_the_veil_sways_from_level_to_level(session, level, sways):
+    """From side to side from level 2 on, and up and down from level 3 on, as far as the walls."""
+    session.game.level, seen = level, []
+    for _ in range(4 * max(*sways, 1)):
+        session.game.phase = Phase.PAST  # the ball does not reach anything
+        session.game.ball.x = 256 * COURT["x"][1]
+        session.step(0)
+        seen.append((session.game.veil.y - 256, session.game.veil.z - 132))
+    assert [(min(way), max(way)) for way in zip(*seen, strict=True)] == [(-sway, sway) for sway in sways]
+    assert all(abs(now - then) <= 1 for pair in pairwise(seen) for then, now in zip(*pair, strict=True))
+
+
+@pytest.mark.parametrize(("alone", "level", "after"), [(False, 8, 9), (False, 9, 9), (True, 3, 4), (True, 4, 1)])
+def test_the_last_level_stays_or_attract_mode_starts_over(session, alone, level, after):
+    game = session.game
+    game.attract, game.level, game.tiles, game.phase = alone, level, 3, Phase.RALLY
+    for axis in "xyz":
+        setattr(game.ball, axis, 256 * getattr(game.target, axis))
+    assert session.step(0) == {"TILE", "LEVEL"}
+    assert (game.level, game.tiles) == (after, 0)
+
+
+def test_attract_mode_loses_no_lives(attract):
+    missed = 0
+    while missed <= LIVES:
+        attract.game.racket.y = COURT["y"][0]
+        assert attract.game.lives == LIVES
+        missed += "MISSED" in attract.step(0)
+
+
+def test_a_game_starts_the_same_whatever_came_before(library):
+    """Only the random numbers go on."""
+    games = []
+    for spoilt in (0, 1, 3):
+        session = Session(library)
+        session.game.random, session.game.phase, session.game.age = 77, Phase.OVER if spoilt else Phase.SERVE, 61
+        for name in ("lives", "level", "tiles", "score", "sway", "alarm", "turn"):
+            setattr(session.game, name, getattr(session.game, name) + spoilt)
+        session.game.racket = session.game.velocity = type(session.game.racket)(spoilt, spoilt, spoilt)
+        assert session.step(FIRE) == {"STARTED"}
+        games.append(bytes(session.game))
+    assert games[0] == games[1] == games[2]
+
+
+def test_what_is_left_out_alone_is_not_drawn(session):
+    """The ball, which is left out at the end, need not have moved in that frame."""
+    for phase in (Phase.PAST, Phase.OVER, Phase.PAST):
+        session.game.phase = phase
+        assert session.draw() == Error.OK
+        assert session.device.shown().rectangles.enabled[Entry.BALL] == (phase != Phase.OVER)
+
+
 def test_lives_are_lost_and_the_game_ends(session):
     assert not session.game.attract
     missed = 0
@@ -166,6 +225,14 @@ def test_fire_starts_anew_but_not_in_haste(session):
     assert (session.game.score, session.game.level, session.game.lives) == (0, 1, LIVES)
 
 
+def test_the_ball_is_served_by_itself(session):
+    phases = []
+    for _ in range(45):
+        session.step(0)
+        phases.append(session.game.phase)
+    assert phases == [*[Phase.SERVE] * 44, Phase.RALLY]
+
+
 def test_fire_serves(session):
     for buttons, phase in ((0, Phase.SERVE), (FIRE, Phase.RALLY)):
         # Fire is still held from the start, and serves only when it is pressed again.
@@ -174,14 +241,18 @@ def test_fire_serves(session):
         assert session.game.phase == phase
 
 
-@pytest.mark.parametrize(("button", "axis", "sign"), [(0, "y", -1), (1, "y", 1), (2, "z", 1), (3, "z", -1)])
-def test_buttons_move_the_racket(session, button, axis, sign):
+@pytest.mark.parametrize(
+    ("button", "axis", "sign", "edge"),
+    [("left", "y", -1, 89 + 32), ("right", "y", 1, 423 - 32), ("up", "z", 1, 264 - 25), ("down", "z", -1, 25)],
+)
+def test_buttons_move_the_racket(session, button, axis, sign, edge):
+    button = BUTTON_NAMES.index(button)
     places = [getattr(session.game.racket, axis)]
     for held in (1 << button, 0b1111, *200 * [1 << button]):
         session.step(held)
         places.append(getattr(session.game.racket, axis))
     assert np.sign(places[1] - places[0]) == sign
-    assert places[-1] == places[-2], "it stops at the edge"
+    assert places[-2:] == [edge, edge], "the racket's edge stops at the wall"
 
 
 def test_bars_show_lives_and_tiles(demo):
