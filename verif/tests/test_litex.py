@@ -9,32 +9,39 @@ from __future__ import annotations
 import json
 import re
 from importlib import import_module
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from conftest import BUILD, ROOT, run_tool
 from litex.build.generic_platform import GenericPlatform, Pins, Subsignal
+from litex.gen.fhdl import verilog
 from litex.soc.cores.video import video_data_layout
 from litex.soc.integration.export import get_csr_json
 from litex.soc.integration.soc_core import SoCCore
+from migen import ClockDomain
 from migen.genlib.io import CRG
 
-from raycaster.configuration import configure
+from raycaster.configuration import Configuration, configure
+from raycaster.convert import litex as litex_module
 from raycaster.convert.litex import add_ray_caster
+from raycaster.convert.take_home import TOP
 from raycaster.errors import UserError
 from raycaster.fpga.board import Board, OpenBoard, find_board
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import shown
 from raycaster.registers import register_map
 from raycaster.scene import load_scene
-from raycaster.sim.simulator import build_program
+from raycaster.sim.simulator import build_program, convert
 
 SCENE = load_scene(ROOT / "docs" / "three_rectangles.toml")
 """Scene drawn by examples/litex_soc.c."""
 
 VIDEO = ("video", 0, Subsignal("valid", Pins(1)), *(Subsignal(name, Pins(width)) for name, width in video_data_layout))
 
-# The second interrupt begins a frame with the whole scene, which ends at the next vertical sync.
+# The second interrupt begins a frame with the whole scene, which ends at the next vertical sync. A reset in the middle
+# of a frame comes first.
 BENCH = """
 `timescale 1ns/1ns
 module soc_bench;
@@ -47,7 +54,14 @@ soc soc (.clk(clk), .reset(reset), .leds(leds), .vga_r(r), .vga_g(g), .vga_b(b),
     .vga_blank_n(blank_n), .vga_sync_n(), .vga_clk(vga_clk), .video_valid(valid), .video_hsync(hsync),
     .video_vsync(vsync), .video_de(de), .video_r(video_r), .video_g(video_g), .video_b(video_b));
 always #10 clk = ~clk;
-initial #100 reset = 0;
+initial begin
+    #100 reset = 0;
+    @(posedge leds[0]) #123456 reset = 1;
+    $display("reset");
+    frames = 0;
+    #100 reset = 0;
+    if (leds) $display("leds are lit after reset");
+end
 always @(negedge vs) if (!reset) begin
     frames = frames + 1;
     $display("frame %0d, wrong syncs %0d", leds, wrong_syncs);
@@ -93,7 +107,8 @@ def test_a_frame_is_golden(options, tmp_path, monkeypatch):
     flags = ("--x-assign", "unique", "--x-initial", "unique", "-Wno-lint", "-Wno-style")
     command = build_program(f"litex-{config.name}", bench.stem, [*files, bench], build=BUILD, flags=flags)
     done = run_tool(tmp_path, *command, "+verilator+rand+reset+2")
-    *_, last, end, _ = re.split(r"^frame (.*)\n", done.stdout, flags=re.MULTILINE)
+    assert "lit" not in done.stdout
+    *_, last, end, _ = re.split(r"^frame (.*)\n", done.stdout.partition("reset\n")[2], flags=re.MULTILINE)
     assert end == "2, wrong syncs 0", done.stdout
     screen = config.screen_geometry
     shape = screen.vertical.visible, screen.horizontal.visible
@@ -101,6 +116,123 @@ def test_a_frame_is_golden(options, tmp_path, monkeypatch):
     assert len(np.unique(expected.reshape(-1, 3), axis=0)) == 1 + len(SCENE.rect)
     assert np.array_equal(pixels(last, "pins", shape, config.colour_bits), expected)
     assert np.array_equal(pixels(last, "stream", shape, 8), expected)
+
+
+AXI_FIELDS = {"aw": ["addr"], "w": ["data", "strb"], "b": ["resp"], "ar": ["addr"], "r": ["data", "resp"]}
+CONNECTED = {
+    "wishbone": {f"wb_{name}": f"bus_{name}" for name in ("cyc", "stb", "we", "sel", "dat_w", "ack", "dat_r")}
+    | {"wb_adr": "bus_adr[4:0]", "1'b0": "bus_err"},
+    "axi4lite": {f"s_axi_{name}{end}": f"{name}_{end}" for name in AXI_FIELDS for end in ("valid", "ready")}
+    | {f"s_axi_{name}{field}": f"{name}_payload_{field}" for name, fields in AXI_FIELDS.items() for field in fields}
+    | {f"s_axi_{name}addr": f"{name}_payload_addr[6:0]" for name in ("aw", "ar")},
+}
+"""Names in LiteX by the ports of a design with three rectangles."""
+
+UNUSED = {
+    "source_first", "source_last", "source_ready", "bus_bte", "bus_cti",
+    *(f"{channel}_{name}" for channel in AXI_FIELDS for name in ("first", "last", "payload_prot")),
+}  # fmt: skip
+
+WRAPPED = {
+    "low": ({"bus": "wishbone", "screen": "tiny", "engine": "exact"}, "!", "!", "!vga_clk"),
+    "low-and-high": ({"bus": "wishbone", "rows": 200, "engine": "exact"}, "!", "", "!vga_clk"),
+    "high": ({"bus": "axi4lite", "rows": 180, "engine": "beam", "colour_bits": 5}, "", "", "1'b1"),
+}
+"""Options; the polarities of HS and VS, from VESA's and CTA's standards, as operators; when a pixel is valid."""
+
+WRAPPER_BENCH = """
+module bench;
+{signals}
+wrapper wrapper (.*);
+integer step, wrong = 0;
+task check(input [255:0] name, input [63:0] seen, input [63:0] expected);
+    if (seen !== expected) begin $display("%0s is %h, expected %h", name, seen, expected); wrong = wrong + 1; end
+endtask
+initial for (step = 0; step < 100 && !wrong; step = step + 1) begin
+    {random}
+    #1;
+    {checks}
+end
+endmodule
+"""
+
+
+def ports(text: str, module: str) -> dict[str, tuple[str, str]]:
+    """Return the direction and the range of each port of a module."""
+    [header] = re.findall(rf"^module {module} \(.*?^\);", text, re.M | re.S)
+    found = re.findall(r"^ *(input|output) +(?:wire|reg) +(\[\d+:0\])? *(\w+),?$", header, re.M)
+    return {name: (direction, width) for direction, width, name in found}
+
+
+def wrapper_of(config: Configuration, directory: Path, right: str, wrong: str) -> str:
+    """Return the Verilog of the LiteX module, which may get a fault, without the design's."""
+    source = Path(litex_module.__file__).read_text()
+    assert right in source
+    module: dict[str, Any] = {"__name__": "faulty"}
+    exec(source.replace(right, wrong), module)
+    module["write_verilog"] = lambda *given: []
+    wrapper = module["RayCaster"](GenericPlatform("none", []), config, directory)
+    wrapper.cd_sys = ClockDomain()
+    channels = [wrapper.bus] if config.bus == "wishbone" else [getattr(wrapper.bus, name) for name in AXI_FIELDS]
+    signals = [*wrapper.vga.values(), wrapper.ev.frame.trigger, wrapper.cd_sys.clk, wrapper.cd_sys.rst]
+    ios = {*signals, *(signal for one in (wrapper.source, *channels) for signal in one.flatten())}
+    return verilog.convert(wrapper, ios=ios, name="wrapper").main_source
+
+
+def unlike_the_tables(kind: str, directory: Path, right: str = "", wrong: str = "") -> str:
+    """Compare all ports of the LiteX module and of a stand-in for the design in it with `CONNECTED` and `WRAPPED`,
+    while random values are on all inputs; return what differs."""
+    options, hs, vs, valid = WRAPPED[kind]
+    config = configure(rectangles=3, **options)
+    wrapper, *_, design = wrapper_of(config, directory, right, wrong), *convert(config, BUILD)
+    [header] = re.findall(rf"^module {TOP} \(.*?^\);", design.read_text(), re.M | re.S)
+    outer, inner = ports(wrapper, "wrapper"), ports(header, TOP)
+    known = CONNECTED[config.bus] | {name: name for name in inner if name.startswith("vga_")}
+    known |= {"clk": "sys_clk", "reset": "sys_rst", "irq": "trigger"}
+    assert known.keys() - {"1'b0"} == inner.keys()
+    checks = [(theirs, f"wrapper.{TOP}.{ours}" if ours in inner else ours) for ours, theirs in known.items()]
+    checks += [("source_payload_hsync", f"{hs}driven_vga_hs"), ("source_payload_vsync", f"{vs}driven_vga_vs")]
+    checks += [("source_valid", valid), ("source_payload_de", "driven_vga_blank_n")]
+    checks += [(f"source_payload_{name}", f"driven_vga_{name} << {8 - config.colour_bits}") for name in "rgb"]
+    assert {theirs.partition("[")[0] for theirs, _ in checks} | UNUSED >= outer.keys()
+    driven = [name for name, (way, _) in inner.items() if way == "output"]
+    given = {name: width for name, (way, width) in outer.items() if way == "input"}
+    given |= {f"driven_{name}": inner[name][1] for name in driven}
+    outputs = (f"wire {width} {name};" for name, (way, width) in outer.items() if way == "output")
+    bench = WRAPPER_BENCH.format(
+        signals="\n".join([*(f"reg {width} {name};" for name, width in given.items()), *outputs]),
+        random=" ".join(f"{name} = $random;" for name in given),
+        checks=" ".join(f'check("{name}", {name}, {expected});' for name, expected in checks),
+    )
+    stand_in = [header, *(f"assign {name} = bench.driven_{name};" for name in driven), "endmodule"]
+    (directory / "all.v").write_text("\n".join([bench, wrapper, *stand_in]))
+    done = run_tool(directory, "iverilog", "-g2012", "-Wall", "-Wno-timescale", "-s", "bench", "-o", "bench", "all.v")
+    return done.stdout or run_tool(directory, "vvp", "-n", "bench").stdout
+
+
+@pytest.mark.parametrize("kind", WRAPPED)
+def test_every_connection(kind, tmp_path):
+    assert unlike_the_tables(kind, tmp_path) == ""
+
+
+@pytest.mark.parametrize(
+    ("kind", "right", "wrong", "complaint"),
+    [
+        ("low-and-high", "screen.vertical.active_high", "screen.horizontal.active_high", "source_payload_vsync"),
+        ("low", "i_reset=ResetSignal()", "i_reset=0", "sys_rst is"),
+        ("low", "i_clk=ClockSignal()", "i_clk=~ClockSignal()", "sys_clk is"),
+        ("low", "o_irq=self.ev.frame.trigger", "o_irq=Signal()", "trigger is"),
+        ("low", '~vga["clk"]', 'vga["clk"]', "source_valid is"),
+        ("low", "adr[:words]", "adr[1 : words + 1]", "bus_adr"),
+        ("low", "adr[:words]", "adr", "expects 5 bits, got 30"),
+        ("high", "addr[: words + 2]", "addr[:words]", "expects 7 bits, got 5"),
+        ("high", '"aw": ["addr"], "w": ["data", "strb"]', '"w": ["data"], "aw": ["addr"]', "(s_axi_wstrb) floating"),
+        ("high", "CHANNEL_BITS - config.colour_bits", "0", "source_payload_r"),
+        ("high", 'for name in "rgb")', 'for name in "rg")', "source_payload_b"),
+    ],
+)
+def test_a_fault_of_the_module_is_noticed(kind, right, wrong, complaint, tmp_path):
+    assert complaint in unlike_the_tables(kind, tmp_path, right, wrong)
 
 
 @pytest.mark.slow_sets("wishbone")
