@@ -148,7 +148,7 @@ class CommandParser(argparse.ArgumentParser):
         option = "--" + SHORT_NAMES.get(name, name).replace("_", "-")
         action = self._option_string_actions.get(option)
         if action is None:
-            taker = f"make {self.name.split()[-1]}" if _from_make() else self.prog
+            taker = _target(self.name) if _from_make() else self.prog
             near = did_you_mean(match[1], map(_variable, self._option_string_actions))
             raise UserError(f"{match[1]}: {taker} does not take it{near}; see {_program()} {self.name} --help")
         if action.nargs == 0:
@@ -176,6 +176,11 @@ def _variable(option: str) -> str:
 
 def _from_make() -> bool:
     return bool(os.environ.get(FROM_MAKE))
+
+
+def _target(name: str) -> str:
+    """Return how make runs a subcommand."""
+    return "make verify-all" if name == "verify all" else f"make {name.rsplit(maxsplit=1)[-1]}"
 
 
 def outside_make() -> dict[str, str]:
@@ -209,7 +214,7 @@ def command_line(name: str, scene: Path | str | None = None, options: Mapping[st
         words = [f"SCENE={shlex.quote(str(scene))}"] if scene else []
         values = {option: int(value) if isinstance(value, bool) else value for option, value in given.items()}
         words += [f"{option.upper()}={shlex.quote(str(value))}" for option, value in values.items()]
-        return " ".join(["make", name.rsplit(maxsplit=1)[-1], *words])
+        return " ".join([_target(name), *words])
     words = [shlex.quote(str(scene))] if scene else []
     for option, value in given.items():
         words.append("--" + SHORT_NAMES.get(option, option).replace("_", "-"))

@@ -88,12 +88,18 @@ class Outcome:
         return int(bool(self.failures or self.missing))
 
 
-def add_campaign_options(parser: argparse.ArgumentParser, cases: str, count: int) -> None:
-    """Add the options of a campaign's command, whose cases are called `cases`, such as seeds."""
+def add_campaign_options(parser: argparse.ArgumentParser, cases: str, count: int, first: int | str = 0) -> None:
+    """Add the options of a campaign's command, whose cases are called `cases`, such as scenes.
+
+    The first one is a number, or a text that describes it.
+    """
     parser.add_argument(
         f"--{cases}", type=positive, default=count, metavar="N", help=f"number of {cases} (default: %(default)s)"
     )
-    parser.add_argument("--first", type=natural, default=0, metavar="N", help=f"the first of the {cases} (%(default)s)")
+    number = first if isinstance(first, int) else None
+    parser.add_argument(
+        "--first", type=natural, default=number, metavar="N", help=f"the first of the {cases} (default: {first})"
+    )
     add_job_options(parser)
     add_fresh_option(parser)
     add_build_option(parser)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """`raycaster verify all`: run all tests, including the slow ones that `make test` leaves out.
 
-The outcome of each test is kept as soon as it ends. If the sources are the same as in the last run, only the tests
-that have not passed yet are run, the longest first; a change in a test file repeats that file only.
+Random tests get a new seed each day. The outcome of each test is kept as soon as it ends. If sources and seed are the
+same as in the last run, only the tests that have not passed yet are run, the longest first; a change in a test file
+repeats that file only. A run in which tests are left keeps its seed on the next day.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from raycaster.options import CommandParser, outside_make
 from raycaster.outcomes import Check, add_keep_option, keep
 from raycaster.output import Console
 from raycaster.sim import ensure_tools
+from raycaster.verif.seeds import VARIABLE, add_seed_option, drawn
 
 TESTS = Path(__file__).resolve().with_name("tests")
 STATE = Path("build/verify-all.jsonl")
@@ -49,7 +51,7 @@ class State:
 
     def __init__(self, path: Path):
         self._path = path
-        self._run: Mapping[str, Any] = {"sources": "", "files": {}}
+        self._run: Mapping[str, Any] = {"sources": "", "files": {}, "seed": None}
         self.tests, self.seconds, self.walls = {}, {}, []
         for line in path.read_text().splitlines() if path.exists() else ():
             try:
@@ -68,7 +70,7 @@ class State:
     def _take(self, entry: Mapping[str, Any]) -> None:
         if "sources" in entry:
             before, self._run = self._run, entry
-            if entry["sources"] != before["sources"] or entry["fresh"]:
+            if entry["fresh"] or any(entry.get(name) != before.get(name) for name in ("sources", "seed")):
                 self.tests, self.walls = {}, []
             same = {name for name, digest in entry["files"].items() if digest == before["files"].get(name)}
             self.tests = {test: found for test, found in self.tests.items() if Path(test.split("::")[0]).name in same}
@@ -78,13 +80,19 @@ class State:
         if entry["outcome"] != "not_run":
             self.seconds[entry["test"]], self.walls[-1] = entry["seconds"], entry["at"]
 
+    def seed_to_resume(self, sources: str) -> int | None:
+        """Return the last run's seed if its sources are the same and tests failed or did not run."""
+        same = self._run["sources"] == sources and (self.of("failed") or self.of("not_run"))
+        return self._run.get("seed") if same else None
+
     def of(self, outcome: str) -> list[str]:
         """List the tests with an outcome."""
         return sorted(test for test, entry in self.tests.items() if entry["outcome"] == outcome)
 
     def figures(self) -> dict[str, Any]:
-        """Counts, seconds, and the tests that failed, were skipped or did not run."""
+        """The seed, counts, seconds, and the tests that failed, were skipped or did not run."""
         return {
+            "seed": self._run.get("seed"),
             "tests": len(self.tests),
             "passed": len(self.of("passed")),
             "failed": self.of("failed"),
@@ -171,6 +179,7 @@ def command_parser() -> CommandParser:
     """Build the parser of the command line."""
     parser = CommandParser("verify all", __doc__, "--jobs 4")
     parser.add_argument("--jobs", type=positive, default=2, metavar="N", help="tests at a time (default: %(default)s)")
+    add_seed_option(parser)
     add_fresh_option(parser)
     add_keep_option(parser)
     return parser
@@ -206,15 +215,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     path = root / STATE
     state = State(path)
     sources, files = tested_sources(root)
-    state.add({"sources": sources, "files": files, "fresh": arguments.fresh})
+    unfinished = None if arguments.fresh else state.seed_to_resume(sources)
+    seed = drawn("verify all", arguments.seed, unfinished, console)
+    state.add({"sources": sources, "files": files, "fresh": arguments.fresh, "seed": seed})
     if state.tests:
         passed = len(state.of("passed"))
-        console.print(f"resumed: {passed} of {len(state.tests)} tests have passed with the same sources")
+        console.print(f"resumed: {passed} of {len(state.tests)} tests have passed with the same sources and seed")
     # Each worker gets one test at a time, so that the longest begin first.
     words = ["-q", "-n", str(arguments.jobs), "--dist", "load", "--maxschedchunk", "1", "--durations", "10"]
     plugin = ["-p", "raycaster.verif.everything", "--outcomes", str(path)]
     command = [sys.executable, "-m", "pytest", *words, *plugin, str(TESTS)]
-    process = subprocess.Popen(command, cwd=root, env=outside_make())
+    process = subprocess.Popen(command, cwd=root, env=outside_make() | {VARIABLE: str(seed)})
     try:
         code = process.wait()
     except KeyboardInterrupt:  # pytest gets it too

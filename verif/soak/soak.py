@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Draw random or stiff scenes with the converted hardware, at full size, and check every pixel: `make soak`."""
+"""Draw random or stiff scenes with the converted hardware, at full size, and check every pixel: `make soak`.
+
+Random scenes are new each day; an unfinished run is resumed with its own.
+"""
 
 from __future__ import annotations
 
 import argparse
 from collections import defaultdict
 from collections.abc import Sequence
+from pathlib import Path
 
 from raycaster.configuration import MOST_REFLECTIONS, Configuration, configure
 from raycaster.convert.provenance import Provenance
@@ -16,8 +20,12 @@ from raycaster.output import Console, Table
 from raycaster.sim.simulator import add_simulator_option
 from raycaster.verif.campaign import Campaign, add_campaign_options, repeated, run_asked
 from raycaster.verif.random_scenes import style_of
+from raycaster.verif.seeds import add_seed_option, drawn
 
 BENCH = "raycaster.verif.soak.bench"
+
+SCENES_PER_SEED = 10_000
+"""Distance between the first scenes of two days, so that each day has new ones."""
 
 
 def show(
@@ -44,7 +52,8 @@ def command_parser() -> CommandParser:
     parser = CommandParser("verify soak", __doc__, "--seeds 10")
     parser.add_argument("--stiff", action="store_true", help="run all cases of the stiff catalogue instead")
     add_simulator_option(parser)
-    add_campaign_options(parser, "seeds", 100)
+    add_seed_option(parser)
+    add_campaign_options(parser, "seeds", 100, f"{SCENES_PER_SEED:,} times the seed")
     return parser
 
 
@@ -80,22 +89,36 @@ CHECKS = (
 )  # fmt: skip
 
 
+def _seeds(arguments: argparse.Namespace, unfinished: Path, console: Console) -> range:
+    """Return the seeds of the random scenes; keep the run's seed in a file until the run is finished."""
+    first = arguments.first
+    if first is None:
+        last = int(unfinished.read_text()) if unfinished.exists() and not arguments.fresh else None
+        options = {"seeds": arguments.seeds} | given_options(arguments)
+        seed = drawn("verify soak", arguments.seed, last, console, **options)
+        unfinished.parent.mkdir(parents=True, exist_ok=True)
+        unfinished.write_text(f"{seed}\n")
+        first = SCENES_PER_SEED * seed
+    return range(first, first + arguments.seeds)
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
     configuration, console = _configuration(arguments), Console()
-    seeds = range(arguments.first, arguments.first + arguments.seeds)
-    if arguments.stiff:
-        seeds = range(len(catalogue(configuration.looks)))
     output = arguments.build / "soak"
+    unfinished = output / f"{configuration.name}.seed"
+    seeds = range(len(catalogue(configuration.looks))) if arguments.stiff else _seeds(arguments, unfinished, console)
     whole = Campaign(
         BENCH, configuration, seeds, output, arguments.build, simulator=arguments.simulator, stiff=arguments.stiff
     )
     outcome = run_asked(whole, arguments, console)
+    if not outcome.missing:
+        unfinished.unlink(missing_ok=True)
     results = outcome.results
     show(results, outcome.seconds, configuration, console, stiff=arguments.stiff)
     counts = {name: sum(one[name] for one in results) for name in ("pixels", "wrong_vs_golden", "wrong_vs_exact")}
-    figures = {"scenes": len(results), "not_shown": outcome.missing, **counts}
+    figures = {"scenes": len(results), "first": seeds.start, "not_shown": outcome.missing, **counts}
     keep(arguments, figures, scope_of(configuration) | {"stiff": arguments.stiff}, provenance)
     wrong = []
     for result in results:

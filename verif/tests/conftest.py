@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import datetime
 import io
 import os
 import re
@@ -13,6 +14,7 @@ import sysconfig
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -29,6 +31,7 @@ from raycaster.options import outside_make, run_command
 from raycaster.output import MARK
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import MODELS_VARIABLE, build_model, find_tool, run_bench
+from raycaster.verif import seeds
 from raycaster.verif.recording import RECORD_VARIABLE, record_test
 from raycaster.verif.seeds import repeat, seed
 
@@ -174,6 +177,12 @@ def bench(output: Path) -> Bench:
         return output
 
     return run
+
+
+def set_day(monkeypatch: pytest.MonkeyPatch, day: int) -> None:
+    """Let long runs draw their seed on a day of December 2026."""
+    today = SimpleNamespace(today=lambda: datetime.date(2026, 12, day))
+    monkeypatch.setattr(seeds, "datetime", SimpleNamespace(date=today))
 
 
 def called(*words: str, cwd: Path, program: Callable[[list[str]], int | None] = main) -> subprocess.CompletedProcess:

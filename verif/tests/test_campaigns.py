@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
+from functools import partial
 from itertools import product
 from pathlib import Path
 from unittest.mock import MagicMock
@@ -13,14 +14,16 @@ from unittest.mock import MagicMock
 import pytest
 from cocotb.handle import ArrayObject
 from cocotb.types import Range
-from conftest import BUILD, ROOT, broken, called
+from conftest import BUILD, ROOT, broken, called, set_day
 
 from raycaster.configuration import configure
 from raycaster.golden.catalogue import catalogue
 from raycaster.scene import dump_scene, load_scene
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import SimulationError, build_model, convert, run_bench
+from raycaster.verif.campaign import Campaign, Outcome
 from raycaster.verif.random_scenes import STYLES, random_scene
+from raycaster.verif.soak import soak
 from raycaster.verif.upsets.bench import KINDS, bits_of
 from raycaster.verif.upsets.upsets import FLAGS, registers_of
 
@@ -58,11 +61,37 @@ def test_the_catalogue_has_what_a_design_shows():
     assert all(len(case.scene.rect) <= 12 for case in catalogue(LOOKS))
 
 
+def test_soak_resumes_an_unfinished_run(tmp_path, monkeypatch):
+    """Each day has other scenes; a run of which scenes have no result is resumed with its own, on any day."""
+    ran: list[range] = []
+
+    def run(campaign: Campaign, arguments, console, *, missing: int = 0) -> Outcome:
+        ran.append(campaign.cases)
+        return Outcome([], [], missing, 1.0)
+
+    def soak_on(day: int, missing: int, *words: str) -> str:
+        set_day(monkeypatch, day)
+        monkeypatch.setattr(soak, "run_asked", partial(run, missing=missing))
+        return called("verify", "soak", "--seeds", "3", "--screen", "tiny", *words, cwd=tmp_path).stdout
+
+    tenth = 20_261_210 * 10_000
+    assert "seed 20261210, by date; repeat with: raycaster verify soak --seed 20261210 --seeds 3 --screen tiny" in (
+        soak_on(10, missing=1)
+    )
+    assert "seed 20261210, of the unfinished run" in soak_on(11, missing=0)
+    assert "seed 20261212, by date" in soak_on(12, missing=1)
+    soak_on(13, 0, "--fresh")
+    soak_on(14, 0, "--seed", "0")
+    assert "seed 2" not in soak_on(15, 0, "--first", "77")
+    firsts = [tenth, tenth, tenth + 20_000, tenth + 30_000, 0, 77]
+    assert ran == [range(first, first + 3) for first in firsts]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "seeds", "reflections", "pixels"),
     [
-        (("--seeds", "8"), range(8), {3, 4}, 640 * 480),
+        (("--seeds", "8", "--seed", "0"), range(8), {3, 4}, 640 * 480),
         # `make soak STIFF=1 ENGINE=exact` uses the full size.
         (("--stiff", "--engine", "exact", "--screen", "tiny"), range(len(catalogue())), {4}, 64 * 48 * 4),
     ],

@@ -10,9 +10,11 @@ from types import SimpleNamespace
 
 import conftest
 import pytest
+from conftest import set_day
 
 from raycaster.errors import UserError
-from raycaster.verif import everything
+from raycaster.output import Console
+from raycaster.verif import everything, seeds
 
 
 def item(name: str, *marks: pytest.Mark) -> SimpleNamespace:
@@ -68,6 +70,7 @@ def test_all_needs_a_clone(tmp_path, monkeypatch):
 TESTS = """
 import os, pathlib, time, pytest
 def ran(name):
+    pathlib.Path(os.environ["RAN"] + ".seed").write_text(os.environ["RAYCASTER_SEED"])
     pathlib.Path(os.environ["RAN"]).open("a").write(name + " ")
 @pytest.mark.parametrize("number", range(2))
 def test_quick(number):
@@ -112,26 +115,44 @@ def run_all(clone: Path) -> tuple[int, list[str], dict]:
     return code, ran.read_text().split(), json.loads(kept.read_text())["figures"]
 
 
-def test_all_is_resumed(clone, capsys):
+def test_all_is_resumed(clone, capsys, monkeypatch):
+    """A run that did not pass keeps the seed of its day; one that has passed begins anew on another day."""
+    set_day(monkeypatch, 5)
     code, ran, figures = run_all(clone)
-    assert code == 1
+    assert (code, figures["seed"], clone.with_name("ran.seed").read_text()) == (1, 20261205, "20261205")
     assert sorted(ran) == ["long", "more0", "more1", "quick0", "quick1", "wrong"]
     assert figures["failed"] == ["verif/tests/test_small.py::test_wrong"]
     assert figures["skipped"] == {"no such board": 1}
     assert [figures[name] for name in ("tests", "passed", "not_run", "runs")] == [7, 5, 0, 1]
     # Tests that have not passed run again, and those of a changed test file; a page is not a source.
     clone.with_name("mended").touch()
+    set_day(monkeypatch, 6)
     (clone / "page.md").write_text("changed")
     more = clone / "verif" / "tests" / "leaves" / "test_more.py"
     more.write_text(more.read_text().replace("more", "other"))
     code, ran, figures = run_all(clone)
     assert (code, sorted(ran)) == (0, ["other0", "other1", "wrong"])
-    assert [figures[name] for name in ("tests", "passed", "failed", "runs")] == [7, 6, [], 2]
-    assert "resumed: 3 of 5 tests have passed" in capsys.readouterr().out
+    assert [figures[name] for name in ("tests", "passed", "failed", "runs", "seed")] == [7, 6, [], 2, 20261205]
+    said = capsys.readouterr().out
+    assert "seed 20261205, of the unfinished run that is resumed; repeat with: make verify-all SEED=20261205" in said
+    assert "resumed: 3 of 5 tests have passed" in said
     # After a source has changed, all tests run again, the longest first.
     (clone / "rtl.py").write_text("changed")
     code, ran, figures = run_all(clone)
-    assert (code, ran[0], len(ran), figures["runs"]) == (0, "long", 6, 1)
+    assert (code, ran[0], len(ran), figures["runs"], figures["seed"]) == (0, "long", 6, 1, 20261206)
+    # The next day has another seed, with which no test has run.
+    set_day(monkeypatch, 7)
+    code, ran, figures = run_all(clone)
+    assert (code, len(ran), clone.with_name("ran.seed").read_text()) == (0, 6, "20261207")
+    assert "seed 20261207, by date; repeat with: make verify-all SEED=20261207" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("words", [["--seed", "5"], []], ids=["option", "environment"])
+def test_a_seed_that_is_asked_for(words, capsys, monkeypatch):
+    monkeypatch.setenv(seeds.VARIABLE, "5" if not words else "6")
+    asked = everything.command_parser().parse_args(words).seed
+    assert seeds.drawn("verify all", asked, 7, Console()) == 5
+    assert "seed 5, as asked for; repeat with: raycaster verify all --seed 5\n" in capsys.readouterr().out
 
 
 def test_results_of_an_interrupted_run_are_kept(tmp_path):
