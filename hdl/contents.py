@@ -84,6 +84,7 @@ class Contents:
         fields: fields of records that are read, which are wires.
         memories: lists of signals that processes index, by name.
         driven: `reg` or `wire` for each signal and memory that is driven, by identity.
+        starting: signals and memories that begin with their initial values, by identity: registers without a reset.
         read: signals that are read, and what they are cut or joined from.
     """
 
@@ -106,6 +107,7 @@ class Contents:
         self._places: dict[int, str] = {}
         self._owners: dict[str, int] = {}
         self.driven: dict[int, str] = {}
+        self.starting: set[int] = set()
         self.read: set[int] = set()
         processes = [part for part in parts if isinstance(part, Process)]
         lists = [one for process in processes for one in process.losdict.values()]
@@ -163,6 +165,8 @@ class Contents:
                 self._drive(part.sigdict[name], kind, name)
             for name in part.outmems:
                 self.driven[id(part.symdict[name])] = kind
+            if internals.keeps(part) and getattr(part, "reset", None) is None:
+                self.starting |= {id(part.symdict[name]) for name in (*part.outputs, *part.outmems)}
             edges = [getattr(edge, "sig", edge) for edge in getattr(part, "senslist", ())]
             for signal in [*(part.sigdict[name] for name in sorted(part.inputs)), *edges, getattr(part, "reset", None)]:
                 if isinstance(signal, SignalType):

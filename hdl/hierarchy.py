@@ -7,9 +7,10 @@ rest: ports, signals and instances. Blocks of one function share a module if the
 
 from __future__ import annotations
 
+import inspect
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -182,14 +183,45 @@ class _Constant:
 
 
 def _kind(block: Block) -> tuple[Any, ...]:
-    """Return what determines a block's module: its function, its arguments, and which ports are the same signal.
+    """Return what determines a block's module: its function, its arguments, which ports are the same signal, and what
+    its processes and the blocks in it begin with.
 
     A signal counts by its shape, a record by its layout, an interface by its class and all its attributes, anything
     else by its value.
     """
     numbers: dict[int, int] = {}
-    same = tuple(numbers.setdefault(id(signal), number) for number, signal in enumerate(block_ports(block).values()))
-    return block.func, _description(block_arguments(block)), same
+    ports = [id(signal) for signal in block_ports(block).values()]
+    same = tuple(numbers.setdefault(port, number) for number, port in enumerate(ports))
+    return block.func, _description(block_arguments(block)), same, [*_beginnings(block, {*ports})]
+
+
+def _beginnings(block: Block, ports: set[int]) -> Iterator[Any]:
+    """Yield what the processes in a block read from around them: numbers, and initial values except those of ports."""
+
+    known: dict[int, int] = {}
+
+    def beginning(value: Any) -> Any:
+        if isinstance(value, SignalType):
+            return id(value) in ports or _Constant(value.val)
+        if isinstance(value, (list, tuple)):
+            return [beginning(element) for element in value]
+        parts = []
+        if inspect.isfunction(value):
+            parts = list(inspect.getclosurevars(value).nonlocals.values())
+        elif type(value).__eq__ is object.__eq__:
+            parts = list(getattr(value, "__dict__", {}).values())
+        else:
+            return _Constant(value)
+        first = id(value) not in known
+        number = known.setdefault(id(value), len(known))
+        return number, type(value), [beginning(part) for part in parts * first]
+
+    for sub in block.subs:
+        if isinstance(sub, Block):
+            yield [beginning(signal) for signal in block_ports(sub).values()]
+            yield from _beginnings(sub, ports)
+        else:
+            yield type(sub), beginning(sub.funcobj)
 
 
 def _description(value: Any) -> Any:

@@ -30,8 +30,8 @@ SOURCE_READERS = tuple((importlib.import_module(f"myhdl.{name}"), "_dedent") for
 
 __all__ = [
     "SOURCE_READERS", "Block", "Constant", "DerivedClock", "EnumItemType", "Process", "ShadowSignal", "SignalType",
-    "SignedSlice", "SliceSignal", "all_signals", "analysed", "assigned", "bits_of", "operands_of", "printed",
-    "set_name", "slices_of", "states_by_name", "states_of", "vhdl_keywords",
+    "SignedSlice", "SliceSignal", "all_signals", "analysed", "assigned", "bits_of", "keeps", "operands_of",
+    "printed", "set_name", "slices_of", "states_by_name", "states_of", "vhdl_keywords",
 ]  # fmt: skip
 
 
@@ -120,6 +120,11 @@ def analysed(processes: Iterable[Process]) -> list[Any]:
 def assigned(tree: Any) -> bool:
     """Return True if an analysed process becomes continuous assignments."""
     return tree.kind == _kind.SIMPLE_ALWAYS_COMB
+
+
+def keeps(tree: Any) -> bool:
+    """Return True if what an analysed process drives are registers: it waits for an edge, or runs only once."""
+    return any(not isinstance(edge, SignalType) for edge in getattr(tree, "senslist", ())) or tree.kind == _kind.INITIAL
 
 
 def printed(tree: Any, sensitivity: Callable[[Sequence[str]], str]) -> tuple[str, str]:

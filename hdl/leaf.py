@@ -15,6 +15,7 @@ from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.errors import faults_in_one_line
 from raycaster.hdl.hierarchy import Module, Port, convert_hierarchy
 from raycaster.hdl.records import Record, port_signals
+from raycaster.hdl.verilog_style import without_power_up
 
 Cycle = Mapping[str, int]
 
@@ -99,8 +100,12 @@ class Leaf:
             simulation.quit()
         return recorded
 
-    def run_verilog(self, stimulus: Sequence[Cycle]) -> list[dict[str, int | None]]:
+    def run_verilog(self, stimulus: Sequence[Cycle], power_up: bool = True) -> list[dict[str, int | None]]:
         """Simulate the converted Verilog; as `run_myhdl`, with None for an output that has an unknown bit.
+
+        Args:
+            stimulus: values for the inputs, by cycle.
+            power_up: False to let registers and memories begin unknown, whatever their initial values.
 
         Raises:
             AssertionError: the simulator refuses the Verilog; its output.
@@ -110,6 +115,10 @@ class Leaf:
         width = sum(port.width for port in self.inputs.values())
         (self._directory / "leaf_bench.v").write_text(self._bench(width, len(stimulus)))
         sources = ["leaf_bench.v", *(str(path.resolve()) for path in self.verilog)]
+        if not power_up:
+            sources = ["leaf_bench.v", "leaf_unknown.v"]
+            texts = (without_power_up(path.read_text()) for path in self.verilog)
+            (self._directory / "leaf_unknown.v").write_text("".join(texts))
         if self.simulator == "verilator":
             flags = ("--binary", "-Wno-fatal", "-Wno-lint", "-CFLAGS", "-fcoroutines -std=gnu++20")
             self._call("verilator", *flags, "--top", "leaf_bench", "-o", "leaf", *sources)
@@ -134,7 +143,8 @@ class Leaf:
         Args:
             stimulus: values for the inputs, by cycle; an input that a cycle does not mention keeps its value, which
                 is 0 at first.
-            settled: the first cycle from which Verilog's registers, which start unknown, must have known values.
+            settled: the first cycle from which values in Verilog must be known and agree, with registers and memories
+                that start unknown; 0: from the start, with their initial values.
 
         Returns:
             The outputs of each cycle; unknown outputs of Verilog, possible before `settled`, are None.
@@ -142,7 +152,7 @@ class Leaf:
         Raises:
             AssertionError: the first difference, or unknown output, with its cycle.
         """
-        actual = self.run_verilog(stimulus)
+        actual = self.run_verilog(stimulus, power_up=not settled)
         assert len(actual) == len(stimulus)
         if not self.with_myhdl:
             for cycle in range(settled, len(stimulus)):

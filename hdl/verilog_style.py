@@ -18,6 +18,9 @@ from raycaster.hdl.signals import Tied
 
 LINE_LENGTH = 120
 
+POWER_UP = "// Values at power-up."
+"""Comment above the initial values of registers and of memories that are written."""
+
 
 def module_text(contents: Contents, name: str, header: str, vocabulary: Mapping[str, Any]) -> str:
     """Return the file of one module.
@@ -44,6 +47,7 @@ def module_text(contents: Contents, name: str, header: str, vocabulary: Mapping[
         f"{comments.purpose}module {name} (\n{_ports(contents, comments)}\n);",
         "".join(f"localparam {constant};\n" for constant in dict.fromkeys(_constants(contents, states))),
         "".join(_declarations(contents)),
+        "\n".join(_initial_values(contents)),
         "".join(_wires(contents)),
         *(functions for _, functions in parts),
         *(text for text, _ in parts),
@@ -52,6 +56,11 @@ def module_text(contents: Contents, name: str, header: str, vocabulary: Mapping[
     text = "\n\n".join(stripped for section in sections if (stripped := section.strip("\n")))
     text = "\n".join(wrapped for line in text.splitlines() for wrapped in _wrap(line.rstrip()))
     return re.sub(r"\n{3,}", "\n\n", text) + "\n"
+
+
+def without_power_up(text: str) -> str:
+    """Return a module's text with registers and memories that begin unknown, except memories that nothing writes."""
+    return re.sub(rf"{POWER_UP}\ninitial (begin\b.*?\nend|.*?;)\n", "", text, flags=re.S)
 
 
 def number(signal: Any) -> str:
@@ -97,14 +106,40 @@ def _declarations(contents: Contents) -> Iterator[str]:
             yield f"{contents.driven.get(id(signal), 'wire')} {_shape(signal)}{contents.text(signal)};\n"
     for name, memory in contents.memories.items():
         kinds = (contents.driven.get(id(one)) for one in [memory, *memory])
-        if kind := next(filter(None, kinds), ""):
-            yield f"{kind} {_shape(memory[0])}{name} [0:{len(memory) - 1}];\n"
+        yield f"{next(filter(None, kinds), 'reg')} {_shape(memory[0])}{name} [0:{len(memory) - 1}];\n"
+
+
+def _initial_values(contents: Contents) -> Iterator[str]:
+    """Yield the contents of memories that nothing writes, then the values at power-up."""
+    loaded = [part.memory for part in contents.parts if isinstance(part, Loading)]
+    signals = [*contents.arriving.values(), *contents.signals]
+    values = [f"{contents.text(one)} = {_value(one)};" for one in signals if id(one) in contents.starting]
+    lines: list[str] = []
+    index = ""
+    for name, memory in contents.memories.items():
+        if any(memory is one for one in loaded):
             continue
-        yield f"reg {_shape(memory[0])} {name} [0:{len(memory) - 1}];\ninitial begin\n"
-        for index, one in enumerate(memory):
-            value = int(one.val)
-            yield f"    {name}[{index}] <= {value if 0 <= value < 1 << 30 else number(one)};\n"
-        yield "end\n"
+        words = [f"{name}[{place}] = {_value(one)};" for place, one in enumerate(memory)]
+        if all(id(one) not in contents.driven for one in [memory, *memory]):
+            yield "\n".join(["initial begin", *(f"    {word}" for word in words), "end\n"])
+        elif id(memory) in contents.starting and len({int(one.val) for one in memory}) > 1:
+            values += words
+        elif id(memory) in contents.starting:
+            index = " : initial_values\n    integer i;"
+            lines.append(f"for (i = 0; i < {len(memory)}; i = i + 1) {name}[i] = {_value(memory[0])};")
+    if values or lines:
+        kept = textwrap.wrap(" ".join(value.replace(" ", "\0") for value in values), LINE_LENGTH - 4)
+        lines = [*(line.replace("\0", " ") for line in kept), *lines]
+        body = "".join(f"    {line}\n" for line in lines)
+        one = len(values) == 1 and not index
+        yield f"{POWER_UP}\n" + (f"initial {lines[0]}\n" if one else f"initial begin{index}\n{body}end\n")
+
+
+def _value(signal: SignalType) -> str:
+    """Return a signal's initial value: a plain number if it is small, the name of a state, or a sized number."""
+    if isinstance(signal.val, EnumItemType):
+        return str(signal.val)
+    return str(int(signal.val)) if 0 <= int(signal.val) < 1 << 30 else number(signal)
 
 
 def _wires(contents: Contents) -> Iterator[str]:

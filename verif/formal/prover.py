@@ -18,6 +18,7 @@ from raycaster.digests import uncommented
 from raycaster.engines import ENGINES
 from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.hierarchy import convert_hierarchy
+from raycaster.hdl.verilog_style import without_power_up
 from raycaster.output import emptied
 from raycaster.tools import TIMEOUT, ToolError, find_program, run_program, run_yosys
 from raycaster.verif.formal.alone import Alone
@@ -195,7 +196,8 @@ def _generated(design: Configuration | Alone) -> dict[str, str]:
             directory.mkdir()
             for block in design.blocks():
                 convert_hierarchy(block, directory, "// {module}", vhdl=False)
-        return {path.name: path.read_text() for path in directory.glob("*.v")}
+        # A proof is about any values at power-up.
+        return {path.name: without_power_up(path.read_text()) for path in directory.glob("*.v")}
 
 
 def make_model(proof: Property, directory: Path, change: Callable[[Path], None] | None = None) -> None:

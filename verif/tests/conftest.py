@@ -27,10 +27,11 @@ from raycaster.configuration import Configuration, configure
 from raycaster.convert import provenance
 from raycaster.hdl.elaboration import forgetting
 from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.verilog_style import without_power_up
 from raycaster.options import outside_make, run_command
 from raycaster.output import MARK
 from raycaster.sim.job import Job
-from raycaster.sim.simulator import MODELS_VARIABLE, build_model, find_tool, run_bench
+from raycaster.sim.simulator import MODELS_VARIABLE, build_model, convert, find_tool, run_bench
 from raycaster.verif import seeds
 from raycaster.verif.recording import RECORD_VARIABLE, record_test
 from raycaster.verif.seeds import repeat, seed
@@ -155,8 +156,11 @@ def output(request: pytest.FixtureRequest) -> Path:
 
 
 @pytest.fixture
-def bench(output: Path) -> Bench:
-    """Return a function that runs a cocotb bench on a design and returns the directory of its results."""
+def bench(output: Path, tmp_path_factory: pytest.TempPathFactory) -> Bench:
+    """Return a function that runs a cocotb bench on a design and returns the directory of its results.
+
+    In Icarus, and in Verilator if options are given for its models, all registers and memories start unknown.
+    """
 
     def run(
         module: str,
@@ -169,6 +173,12 @@ def bench(output: Path) -> Bench:
         seeds: tuple[int, ...] = (),
         plusargs: tuple[str, ...] = (),
     ) -> Path:
+        if simulator == "icarus" or plusargs:
+            files = verilog or convert(configuration, BUILD)
+            directory = tmp_path_factory.mktemp("unknown")
+            verilog = [directory / file.name for file in files]
+            for file, copy in zip(files, verilog, strict=True):
+                copy.write_text(without_power_up(file.read_text()))
         model = build_model(configuration, simulator, build=BUILD, verilog=verilog, defines=defines)
         job = Job(
             configuration, scene=str(scene), output=str(output), reflections=configuration.reflections, seeds=seeds

@@ -96,10 +96,10 @@ DESIGNS = {
 }
 OUTCOMES = {
     file: outcome
-    for outcome, files in re.findall(r"^\| (equal.*?|refused: .*?) \| (.*) \|$", PAGE.read_text(), re.M)
+    for outcome, files in re.findall(r"^\| (equal|refused: .*?) \| (.*) \|$", PAGE.read_text(), re.M)
     for file in re.findall("`(.*?)`", files)
 }
-"""Outcome of each example, by its file, from the manual's table: equal, perhaps with a restriction, or refused."""
+"""Outcome of each example, by its file, from the manual's table: equal or refused."""
 
 
 def test_the_manual_has_each_example():
@@ -152,11 +152,13 @@ def test_an_example_converts_as_myhdl_does(file, examples, tmp_path, random, mon
     flat = tmp_path / "flat"
     flat.mkdir()
     with elaboration():
-        function(**arguments()).convert(hdl="Verilog", path=str(flat), initial_values=False)
+        function(**arguments()).convert(hdl="Verilog", path=str(flat), initial_values=True)
     leaf.verilog = [flat / f"{name}.v"]
-    assert leaf.run_verilog(stimulus) == modules
+    # MyHDL gives outputs no initial values.
+    for seen, ours in zip(leaf.run_verilog(stimulus), modules, strict=True):
+        assert all(value in (None, ours[port]) for port, value in seen.items())
     # In Verilog, where signals begin unknown, the start is an edge of this design's reset, but not in MyHDL.
     start = name == "uart_tx"
     for seen, expected in zip(modules[start:], leaf.run_myhdl(stimulus)[start:], strict=True):
         assert all(value in (None, expected[port]) for port, value in seen.items())
-    assert any(None not in cycle.values() for cycle in modules) == (outcome == "equal")
+    assert any(None not in cycle.values() for cycle in modules)

@@ -8,7 +8,7 @@ from itertools import combinations_with_replacement
 import numpy as np
 import pytest
 from hdl_blocks import Mirrored, Pair, another_inverted, chosen_part, inverted, step
-from myhdl import ResetSignal, Signal, always_seq, block, intbv
+from myhdl import ResetSignal, Signal, always, always_seq, block, intbv
 
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.records import Interface, Record
@@ -45,6 +45,23 @@ def offset(clk, reset, late, moved):
     return (work,)
 
 
+@block
+def begun(clk, value, moved, kind):
+    """moved = a register, a word and a number, of which one depends on the value's initial value."""
+    start, other = int(value.val), 9
+    register = Signal(intbv(start if kind == "register" else other)[8:])
+    words = [Signal(intbv(start if kind == "words" else other + n)[8:]) for n in range(2)]
+    number = start if kind == "number" else other
+
+    @always(clk.posedge)
+    def work():
+        if register[0]:
+            register.next = value
+        moved.next = register ^ number ^ words[value[0]]
+
+    return (work,)
+
+
 class Ports(Interface):
     """Arguments, of which only those that are used become ports."""
 
@@ -56,6 +73,7 @@ class Ports(Interface):
         self.halves, self.same, self.thin = (Record({"high": high, "low": 8 - high}) for high in (4, 4, 2))
         self.first, self.second, self.third = (Signal(intbv(initial)[8:]) for initial in (3, 3, 5))
         self.one, self.two = unsigned(4), unsigned(4)
+        self.wide_one, self.wide_two = unsigned(8), unsigned(8)
 
 
 def offsets(x, amounts=(1, 1), values=("nibble",) * 2, resets=("high",) * 2, outputs=("first", "second")):
@@ -74,6 +92,7 @@ ALIKE = [
     partial(offsets, resets=("low", "low")),
     lambda x: ((chosen_part, x.halves, x.one), (chosen_part, x.same, x.two)),
     lambda x: ((inverted, x.halves.high, x.one), (inverted, x.halves.low, x.two)),
+    lambda x: ((begun, x.clk, x.first, x.wide_one, "register"), (begun, x.clk, x.second, x.wide_two, "register")),
 ]
 APART = [
     *(
@@ -92,6 +111,10 @@ APART = [
     lambda x: ((chosen_part, x.halves, x.one), (chosen_part, x.thin, x.two)),
     lambda x: ((inverted, x.nibble, x.one), (another_inverted, x.nibble, x.two)),
 ]  # fmt: skip
+for kind in ("register", "words", "number"):
+    APART.append(
+        lambda x, kind=kind: ((begun, x.clk, x.first, x.wide_one, kind), (begun, x.clk, x.third, x.wide_two, kind))
+    )
 for values in combinations_with_replacement(("nibble", "digit", "flag", "narrow", "signed"), 2):
     (ALIKE if values[0] == values[1] else APART).append(partial(offsets, values=values))
 
@@ -118,4 +141,4 @@ def test_arguments_that_differ_make_modules_that_differ(instances, apart, tmp_pa
         # No input leaves its range.
         inputs = {port: int(random.integers(1 << shape.width)) % 10 for port, shape in leaf.given.items()}
         stimulus += [inputs | dict.fromkeys({"x_clk"} & {*inputs}, phase) for phase in (0, 1)]
-    leaf.run_both(stimulus, settled=4)
+    leaf.run_both(stimulus, settled=0 if name == "begun" else 4)
