@@ -22,6 +22,10 @@ TOLERANCE = 0.0051
 """Allowed relative error of a pixel clock: half a per cent, which monitors accept."""
 
 
+Pll = tuple[Mapping[str, int | str], float]
+"""Parameters of the family's module `board_pll`, and the frequency that they give, in MHz."""
+
+
 @dataclass(frozen=True)
 class Clocks:
     """Settings of a board's PLL for a screen.
@@ -76,7 +80,7 @@ class Flow:
     cells: tuple[str, str, str, str]
     factor_bits: int
     tells_crossings: bool
-    pll: Callable[[float, float, float], tuple[Mapping[str, int | str], float] | None]
+    pll: Callable[[float, float, float], Pll | None]
 
 
 def clocks_for(board: OpenBoard, config: Configuration) -> Clocks:
@@ -92,7 +96,7 @@ def clocks_for(board: OpenBoard, config: Configuration) -> Clocks:
         raise UserError(f"screen: {config.screen} is for simulation only; leave it out, or choose vga")
     if board.video == "parallel" and screen.clocks_per_pixel > 1:
         raise UserError(f"rows: the {board.title} takes one clock per pixel; choose ROWS=120, 96 or 60, or ENGINE=beam")
-    pixel_mhz = screen.pixel_hz / 1e6
+    pixel_mhz = screen.monitor_hz / 1e6
     # Ten bits per pixel, two per cycle.
     shifts = 5 if board.video == "dvi" else 1
     wanted = pixel_mhz * shifts
@@ -112,15 +116,47 @@ def _lpf(board: OpenBoard) -> str:
     return "".join(f"{line}\n" for line in lines)
 
 
-def _ecp5_pll(source: float, wanted: float, per_clk: float) -> tuple[Mapping[str, int | str], float] | None:
-    """Set EHXPLLL, with feedback from the shift clock: nearest frequency first, then fastest phase comparison."""
+_ECP5_COMPARED = 10, 400
+_ECP5_OSCILLATOR = 400, 800
+"""Limits of EHXPLLL's phase comparison and oscillator in MHz, from FPGA-DS-02012."""
+
+
+def _ecp5_pll(source: float, wanted: float, per_clk: float) -> Pll | None:
+    """Set EHXPLLL, with feedback from the shift clock: nearest frequency first, then fastest phase comparison.
+
+    Most boards' oscillator gives no standard's pixel clock within the limits. A first PLL then makes the nearest
+    reference of which the shift clock is a multiple.
+    """
+    one = _ecp5_last(source, wanted, per_clk)
+    if one is not None and abs(one[1] / wanted - 1) <= TOLERANCE:
+        return one
+    least, most = _ECP5_OSCILLATOR
     found = []
-    for clki in range(1, int(source / 3.125) + 1):
+    for clki in range(1, int(source / _ECP5_COMPARED[0]) + 1):
+        for feedback in range(-int(-least * clki // source), min(int(most * clki / source), 128) + 1):
+            for divider in range(1, 129):
+                reference = source / clki * feedback / divider
+                clkfb = round(wanted / reference)
+                if _ECP5_COMPARED[0] <= reference <= _ECP5_COMPARED[1] and clkfb:
+                    found.append((abs(reference * clkfb - wanted), -reference, (clki, feedback, divider)))
+    for _, reference, parameters in sorted(found):
+        last = _ecp5_last(-reference, wanted, per_clk)
+        if last is not None:
+            first = dict(zip(("FIRST_CLKI_DIV", "FIRST_FB_DIV", "FIRST_DIV"), parameters, strict=True))
+            return first | last[0], last[1]
+    return one
+
+
+def _ecp5_last(source: float, wanted: float, per_clk: float) -> Pll | None:
+    """Set the PLL that makes the shift clock from a reference."""
+    least, most = _ECP5_OSCILLATOR
+    found = []
+    for clki in range(1, int(source / _ECP5_COMPARED[0]) + 1):
         clkfb = round(wanted / source * clki)
         made = source * clkfb / clki
-        # Lowest oscillator frequency in the range of 400 to 800 MHz.
-        shift_div = -(-400 // made) if clkfb else 0
-        if 1 <= clkfb <= 80 and made * shift_div <= 800 and (shift_div * per_clk).is_integer():
+        # Lowest oscillator frequency in its range.
+        shift_div = -(-least // made) if clkfb else 0
+        if 1 <= clkfb <= 80 and made * shift_div <= most and (shift_div * per_clk).is_integer():
             parameters = (clki, clkfb, int(shift_div), int(shift_div * per_clk))
             found.append((abs(made - wanted), clki, made, parameters))
     if not found:
@@ -142,7 +178,7 @@ _ICE40_FILTERS = (17, 26, 44, 66, 101)
 """Frequencies of the phase comparison, in MHz, from which on the PLL's filter range is one higher."""
 
 
-def _ice40_pll(source: float, wanted: float, per_clk: float) -> tuple[Mapping[str, int | str], float] | None:
+def _ice40_pll(source: float, wanted: float, per_clk: float) -> Pll | None:
     """Set SB_PLL40_PAD, with internal feedback: nearest frequency first, then fastest phase comparison."""
     found = []
     for divr in range(16):
@@ -174,7 +210,7 @@ def _cst(board: OpenBoard) -> str:
 _GOWIN_DIVIDERS = (2, 4, 8, *range(16, 129, 16))
 
 
-def _gowin_pll(source: float, wanted: float, per_clk: float) -> tuple[Mapping[str, int | str], float] | None:
+def _gowin_pll(source: float, wanted: float, per_clk: float) -> Pll | None:
     """Set rPLL, with internal feedback: nearest frequency first, then fastest phase comparison."""
     halved = per_clk != 5
     fast = wanted * (1 + halved)

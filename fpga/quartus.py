@@ -249,4 +249,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     design = design_of(arguments.scene, given_options(arguments), arguments.fix, Console(), **board.configuration)
     directory = arguments.output / arguments.board
     write_project(board, design.configuration, design.shown, directory)
+    screen = design.configuration.screen_geometry
+    if screen.standard_hz:
+        made, standard = screen.pixel_hz / 1e6, screen.standard_hz / 1e6
+        print(f"pixel clock: {made:g} MHz; the standard's is {standard:g} MHz, and a monitor may refuse the other")
     print(printable(compile_project(board, directory)))

@@ -94,7 +94,8 @@ class Options:
     colour_bits: Whole = Field(8, ge=1, le=CHANNEL_BITS, description="bits per colour channel on the VGA output")
     screen: Literal["vga", "tiny", "play"] = Field(
         "vga",
-        description="screen: vga, tiny (64x48, for slow simulators) or play (320x240 with short frames, beam only)",
+        description="screen: vga (on boards without a PLL, 640x480 has 25 MHz, 0.7 per cent below the standard), tiny "
+        "(64x48, for slow simulators) or play (320x240 with short frames, beam only)",
     )
     allow_underrun: bool = Field(False, description="accept a design that cannot meet the row budget")
     culling: bool | None = Field(

@@ -48,6 +48,9 @@ class Screen:
     clocks_per_pixel: int = 2
     """System clocks per pixel of the monitor; two give the line-buffered engines twice the time."""
     pixel_hz: int = 25_000_000
+    """Pixel clock for which designs are made."""
+    standard_hz: int | None = None
+    """Pixel clock of the standard that has this timing; None if no standard has it."""
     scale: int = 1
     """Resolution scale: samples per unit of slope."""
     distance: int = VIEW_DISTANCE
@@ -73,6 +76,11 @@ class Screen:
     def clock_hz(self) -> int:
         """Frequency of the system clock, in Hz."""
         return self.pixel_hz * self.clocks_per_pixel // self.pixels_per_clock
+
+    @property
+    def monitor_hz(self) -> int:
+        """Pixel clock for a board whose PLL makes any: the standard's, if there is one."""
+        return self.standard_hz or self.pixel_hz
 
     @property
     def beats(self) -> Span:
@@ -125,18 +133,19 @@ class Screen:
         return replace(screen, pixels_per_clock=2)
 
 
+# 25 MHz is half of the 50 MHz of most boards, 0.7 per cent below the standard.
 _VGA_LINE = Span(visible=640, front=16, sync=96, back=48, active_high=False)
-_VGA_240 = Screen(320, 240, 190, 2, _VGA_LINE, Span(480, 10, 2, 33, active_high=False))
-_VGA_200 = Screen(320, 200, 150, 2, _VGA_LINE, Span(400, 12, 2, 35, active_high=True))
+_VGA_240 = Screen(320, 240, 190, 2, _VGA_LINE, Span(480, 10, 2, 33, active_high=False), standard_hz=25_175_000)
+_VGA_200 = Screen(320, 200, 150, 2, _VGA_LINE, Span(400, 12, 2, 35, active_high=True), standard_hz=25_175_000)
 _FULL_HD_60 = Screen(
     320, 180, 130, 6, Span(1920, 88, 44, 148, active_high=True), Span(1080, 4, 5, 36, active_high=True),
-    clocks_per_pixel=1, pixel_hz=148_500_000,
+    clocks_per_pixel=1, pixel_hz=148_500_000, standard_hz=148_500_000,
 )  # fmt: skip
 # At the same clock frequency, two pixels per clock double the frame rate.
-_FULL_HD_30 = replace(_FULL_HD_60, pixel_hz=74_250_000, for_pairs=_FULL_HD_60)
+_FULL_HD_30 = replace(_FULL_HD_60, pixel_hz=74_250_000, standard_hz=74_250_000, for_pairs=_FULL_HD_60)
 _HD_180 = Screen(
     320, 180, 130, 4, Span(1280, 110, 40, 220, active_high=True), Span(720, 5, 5, 20, active_high=True),
-    pixel_hz=74_250_000, finer=_FULL_HD_30,
+    pixel_hz=74_250_000, standard_hz=74_250_000, finer=_FULL_HD_30,
 )  # fmt: skip
 _TINY_LINES = Span(96, 2, 2, 4, active_high=False)
 # The line is just long enough for 32 units to have the same 320 cycles per group as on the full screen.

@@ -1,33 +1,60 @@
 // SPDX-License-Identifier: MIT
-// Simulation models of the ECP5 and Gowin cells that tops use, with frequencies, phases and edges only.
+// Simulation models of the ECP5, iCE40 and Gowin cells that tops use, with frequencies, phases and edges only. A PLL
+// whose dividers, frequencies or feedback depart from its data sheet does not lock.
 
 `timescale 1ns / 1ps
 
-// The oscillator of a PLL: tick changes HALVES * FEEDBACK / REFERENCE / 2 times per cycle of the input; it locks after
-// eight cycles.
+// The oscillator of a PLL and its lock: tick changes twice per cycle of the oscillator, whose frequency is the input's,
+// divided by REFERENCE and multiplied by FEEDBACK * LOOP. It locks if feedback has FEEDBACK edges per REFERENCE edges of
+// the input. Limits of the phase comparison and the oscillator are in MHz.
 module pll_oscillator #(
-    parameter REFERENCE = 1, parameter FEEDBACK = 1, parameter HALVES = 2
+    parameter REFERENCE = 1, FEEDBACK = 1, LOOP = 1, LEGAL = 1,
+    COMPARED_LEAST = 1, COMPARED_MOST = 1, LEAST = 1, MOST = 1
 ) (
-    input wire clk_in,
+    input wire clk_in, feedback, reset,
     output reg tick = 1'b0,
     output reg locked = 1'b0
 );
+    localparam integer PERIODS = 8;
+
     realtime rose;
-    real half;
+    real compared, oscillator;
+    reg runs = 1'b0;
+    integer edges = 0, cycles = 0;
 
     initial begin
-        @(posedge clk_in) rose = $realtime;
-        @(posedge clk_in) half = ($realtime - rose) * REFERENCE / FEEDBACK / HALVES;
-        forever begin
-            tick = ~tick;
-            #(half);
+        // A reference from another PLL is steady once that has locked.
+        wait (!reset);
+        repeat (2) @(posedge clk_in);
+        rose = $realtime;
+        @(posedge clk_in) compared = 1000 / ($realtime - rose) / REFERENCE;
+        oscillator = compared * FEEDBACK * LOOP;
+        // The period is known to a picosecond.
+        runs = LEGAL && compared > COMPARED_LEAST * 0.999 && compared < COMPARED_MOST * 1.001
+            && oscillator > LEAST * 0.999 && oscillator < MOST * 1.001;
+        if (!runs)
+            $display("illegal PLL: compares at %0.3f MHz, oscillates at %0.3f MHz", compared, oscillator);
+        while (runs) begin
+            if (!reset)
+                tick = ~tick;
+            #(500 / oscillator);
         end
     end
 
-    initial begin
-        repeat (8) @(posedge clk_in);
-        locked = 1'b1;
-    end
+    always @(posedge feedback)
+        edges = edges + 1;
+
+    always @(posedge clk_in)
+        if (reset || !runs) begin
+            locked = 1'b0;
+            cycles = 0;
+            edges = 0;
+        end else if (cycles == PERIODS * REFERENCE) begin
+            locked = edges >= PERIODS * FEEDBACK - 1 && edges <= PERIODS * FEEDBACK + 1;
+            cycles = 1;
+            edges = 0;
+        end else
+            cycles = cycles + 1;
 endmodule
 
 // Two bits per cycle: d0 while the clock is high, d1 while it is low, both sampled at the rising edge.
@@ -45,7 +72,7 @@ module ddr_output (
     assign q = clk ? first : second;
 endmodule
 
-// ECP5: the PLL, with feedback from CLKOP. Parameters from FEEDBK_PATH on have no effect here.
+// ECP5: the PLL, with feedback from CLKOP or CLKOS. Limits are those of FPGA-DS-02012, dividers those of FPGA-TN-02200.
 module EHXPLLL #(
     parameter CLKI_DIV = 1, CLKFB_DIV = 1, CLKOP_DIV = 8, CLKOP_CPHASE = 0, CLKOS_DIV = 8, CLKOS_CPHASE = 0,
     FEEDBK_PATH = "", CLKOP_ENABLE = "", CLKOP_FPHASE = 0, CLKOS_ENABLE = "", CLKOS_FPHASE = 0, CLKOS2_ENABLE = "",
@@ -58,8 +85,15 @@ module EHXPLLL #(
     output wire LOCK
 );
     wire tick;
-    pll_oscillator #(.REFERENCE(CLKI_DIV), .FEEDBACK(CLKFB_DIV), .HALVES(2 * CLKOP_DIV)) oscillator (
-        .clk_in(CLKI), .tick(tick), .locked(LOCK)
+    pll_oscillator #(
+        .REFERENCE(CLKI_DIV), .FEEDBACK(CLKFB_DIV), .LOOP(FEEDBK_PATH == "CLKOP" ? CLKOP_DIV : CLKOS_DIV),
+        .LEGAL((FEEDBK_PATH == "CLKOP" || FEEDBK_PATH == "CLKOS") && CLKI_DIV >= 1 && CLKI_DIV <= 128
+            && CLKFB_DIV >= 1 && CLKFB_DIV <= 80 && CLKOP_DIV >= 1 && CLKOP_DIV <= 128
+            && CLKOS_DIV >= 1 && CLKOS_DIV <= 128),
+        .COMPARED_LEAST(10), .COMPARED_MOST(400), .LEAST(400), .MOST(800)
+    ) oscillator (
+        .clk_in(CLKI), .feedback(CLKFB), .reset(RST && PLLRST_ENA == "ENABLED" || STDBY && STDBY_ENABLE == "ENABLED"),
+        .tick(tick), .locked(LOCK)
     );
 
     // Both outputs count the oscillator's half periods, so that rounding cannot separate them; their rising edges
@@ -69,8 +103,8 @@ module EHXPLLL #(
     always @(tick) begin
         op_count = op_count == 2 * CLKOP_DIV - 1 ? 0 : op_count + 1;
         os_count = os_count == 2 * CLKOS_DIV - 1 ? 0 : os_count + 1;
-        CLKOP = op_count < CLKOP_DIV;
-        CLKOS = os_count < CLKOS_DIV;
+        CLKOP = op_count < CLKOP_DIV && CLKOP_ENABLE == "ENABLED";
+        CLKOS = os_count < CLKOS_DIV && CLKOS_ENABLE == "ENABLED";
     end
 endmodule
 
@@ -81,7 +115,50 @@ module ODDRX1F (
     ddr_output ddr (.clk(SCLK), .d0(D0), .d1(D1), .q(Q));
 endmodule
 
-// Gowin: the PLL, with internal feedback. Parameters from FCLKIN on have no effect here.
+// iCE40: the PLL with its input at a pin, with internal feedback. Limits are those of the UltraPlus family's data sheet.
+module SB_PLL40_PAD #(
+    parameter FEEDBACK_PATH = "", DIVR = 0, DIVF = 0, DIVQ = 1, FILTER_RANGE = 0
+) (
+    input wire PACKAGEPIN, RESETB, BYPASS,
+    output wire PLLOUTGLOBAL, LOCK
+);
+    wire tick;
+    pll_oscillator #(
+        .REFERENCE(DIVR + 1), .FEEDBACK(DIVF + 1),
+        .LEGAL(FEEDBACK_PATH == "SIMPLE" && DIVR >= 0 && DIVR <= 15 && DIVF >= 0 && DIVF <= 127 && DIVQ >= 1 && DIVQ <= 6),
+        .COMPARED_LEAST(10), .COMPARED_MOST(133), .LEAST(533), .MOST(1066)
+    ) oscillator (
+        .clk_in(PACKAGEPIN), .feedback(tick), .reset(!RESETB), .tick(tick), .locked(LOCK)
+    );
+
+    integer count = 0;
+    reg divided = 1'b0;
+    always @(tick) begin
+        count = count == (1 << DIVQ) - 1 ? 0 : count + 1;
+        if (count == 0)
+            divided = ~divided;
+    end
+    assign PLLOUTGLOBAL = BYPASS ? PACKAGEPIN : divided;
+endmodule
+
+// A pin driven at both edges of the clock, which is PIN_TYPE 0100xx.
+module SB_IO #(
+    parameter [5:0] PIN_TYPE = 6'b000000
+) (
+    output wire PACKAGE_PIN,
+    input wire OUTPUT_CLK, CLOCK_ENABLE, D_OUT_0, D_OUT_1
+);
+    reg rising, falling;
+    always @(posedge OUTPUT_CLK)
+        if (CLOCK_ENABLE)
+            rising <= D_OUT_0;
+    always @(negedge OUTPUT_CLK)
+        if (CLOCK_ENABLE)
+            falling <= D_OUT_1;
+    assign PACKAGE_PIN = PIN_TYPE[5:2] != 4'b0100 ? 1'bx : OUTPUT_CLK ? rising : falling;
+endmodule
+
+// Gowin: the PLL, with internal feedback. Limits are those of the GW2A in speed grade C8.
 module rPLL #(
     parameter IDIV_SEL = 0, FBDIV_SEL = 0,
     FCLKIN = "", DEVICE = "", ODIV_SEL = 8, DYN_IDIV_SEL = "", DYN_FBDIV_SEL = "", DYN_ODIV_SEL = "", PSDA_SEL = "",
@@ -94,9 +171,26 @@ module rPLL #(
     input wire [3:0] PSDA, FDLY, DUTYDA,
     output wire CLKOUT, LOCK
 );
-    pll_oscillator #(.REFERENCE(IDIV_SEL + 1), .FEEDBACK(FBDIV_SEL + 1)) oscillator (
-        .clk_in(CLKIN), .tick(CLKOUT), .locked(LOCK)
+    wire tick;
+    integer count = 0;
+    reg divided = 1'b0;
+    pll_oscillator #(
+        .REFERENCE(IDIV_SEL + 1), .FEEDBACK(FBDIV_SEL + 1), .LOOP(ODIV_SEL),
+        .LEGAL(DYN_IDIV_SEL == "false" && DYN_FBDIV_SEL == "false" && DYN_ODIV_SEL == "false"
+            && IDIV_SEL >= 0 && IDIV_SEL <= 63 && FBDIV_SEL >= 0 && FBDIV_SEL <= 63
+            && (ODIV_SEL == 2 || ODIV_SEL == 4 || ODIV_SEL == 8 || ODIV_SEL % 16 == 0 && ODIV_SEL <= 128)),
+        .COMPARED_LEAST(3), .COMPARED_MOST(500), .LEAST(500), .MOST(1250)
+    ) oscillator (
+        .clk_in(CLKIN), .feedback(CLKFB_SEL == "internal" ? divided : CLKFB), .reset(RESET || RESET_P),
+        .tick(tick), .locked(LOCK)
     );
+
+    always @(tick) begin
+        count = count == ODIV_SEL - 1 ? 0 : count + 1;
+        if (count == 0)
+            divided = ~divided;
+    end
+    assign CLKOUT = CLKOUT_BYPASS == "true" ? CLKIN : divided;
 endmodule
 
 // Divides HCLKIN by two or by five.

@@ -6,11 +6,10 @@ from dataclasses import replace
 import pytest
 from vectors import by
 
-from raycaster.configuration import configure
 from raycaster.rtl.common.interfaces import Scan, Vga
 from raycaster.rtl.common.records import Pixel
 from raycaster.rtl.video.video_generator import video_generator
-from raycaster.screens import SCREENS, Screen, Span
+from raycaster.screens import BEAM_SCREENS, SCREENS, Screen, Span
 
 
 def video_model(screen: Screen, lead: int, at_start: bool, cycle: int, colours: list[list[int]]) -> dict[str, int]:
@@ -97,13 +96,33 @@ def test_video_generator(name, colour_bits, leaf_of, random):
     leaf.check(settled=1)
 
 
-@pytest.mark.parametrize(
-    ("rows", "horizontal", "vertical"),
-    [
-        (240, Span(640, 16, 96, 48, active_high=False), Span(480, 10, 2, 33, active_high=False)),
-        (200, Span(640, 16, 96, 48, active_high=False), Span(400, 12, 2, 35, active_high=True)),
-    ],
-)
-def test_the_full_screens_are_the_standard_modes(rows, horizontal, vertical):
-    screen = configure(rows=rows).screen_geometry
-    assert (screen.horizontal, screen.vertical) == (horizontal, vertical)
+MODES = {
+    (640, 480, 25_000_000): (25_175_000, (16, 96, 48), (10, 2, 33), (0, 0)),  # VESA DMT 04h, CTA-861 VIC 1
+    (640, 400, 25_000_000): (25_175_000, (16, 96, 48), (12, 2, 35), (0, 1)),  # IBM's VGA, text mode at 70 Hz
+    (1280, 720, 74_250_000): (74_250_000, (110, 40, 220), (5, 5, 20), (1, 1)),  # VESA DMT 55h, CTA-861 VIC 4
+    (1920, 1080, 74_250_000): (74_250_000, (88, 44, 148), (4, 5, 36), (1, 1)),  # CTA-861 VIC 34
+    (1920, 1080, 148_500_000): (148_500_000, (88, 44, 148), (4, 5, 36), (1, 1)),  # VESA DMT 52h, CTA-861 VIC 16
+}
+"""The standards' pixel clock; front porch, sync and back porch of lines and of frames; and the syncs' active levels, by
+pixels, lines and the designs' pixel clock. Typed from the standards."""
+
+OUR_OWN = {"tiny": (128, 96), "play": (320, 240)}
+"""Screens with timings of no standard, for simulation: pixels and lines."""
+
+
+@pytest.mark.parametrize("screens", [SCREENS, BEAM_SCREENS], ids=["buffered", "beam"])
+def test_the_timings_are_the_standards(screens):
+    """Every screen, at every scale, with one pixel or two per clock."""
+    seen = set()
+    for (name, rows), screen in screens.items():
+        for scaled in map(screen.scaled, screen.scales):
+            for one in (scaled, scaled.paired()):
+                h, v = one.horizontal, one.vertical
+                if name in OUR_OWN:
+                    assert (h.visible, v.visible, one.standard_hz) == (*OUR_OWN[name], None)
+                    continue
+                mode = (h.visible, v.visible, one.pixel_hz)
+                timing = (h.front, h.sync, h.back), (v.front, v.sync, v.back), (h.active_high, v.active_high)
+                assert (one.standard_hz, *timing) == MODES[mode], (name, rows, one.scale)
+                seen.add(mode)
+    assert seen == (set(MODES) if screens is BEAM_SCREENS else {mode for mode in MODES if mode[0] == 640})
