@@ -143,7 +143,7 @@ def _ecp5_pll(source: float, wanted: float, per_clk: float) -> Pll | None:
         last = _ecp5_last(-reference, wanted, per_clk)
         if last is not None:
             first = dict(zip(("FIRST_CLKI_DIV", "FIRST_FB_DIV", "FIRST_DIV"), parameters, strict=True))
-            return first | last[0], last[1]
+            return {**first, **last[0]}, last[1]
     return one
 
 
