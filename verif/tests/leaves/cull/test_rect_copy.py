@@ -26,7 +26,7 @@ def test_rect_copy(count, margin, leaf_of, random):
     for cycle in range(600):
         fetch, index = int(cycle < count or random.random() < 0.3), cycle if cycle < count else random.integers(count)
         # Ask only for rectangles that were fetched long enough ago.
-        ask = int(cycle > count + 4 and random.random() < 0.7)
+        ask = int(cycle == count + 5 or (cycle > count + 5 and random.random() < 0.7))
         corners = np.array([[any_place(random) for _ in range(3)] for _ in range(2)])
         corners[1, random.integers(3)] = corners[0].copy()[axis := int(random.integers(3))]
         corners[1, axis] = corners[0, axis]
