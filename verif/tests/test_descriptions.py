@@ -95,6 +95,14 @@ def test_the_component_of_platform_designer(tmp_path):
     compare_calls("platform_designer", [call for call in calls if call[0] not in elsewhere])
 
 
+@pytest.mark.parametrize(
+    ("options", "hz"), [({}, 50_000_000), ({"engine": "beam", "rows": 180}, 74_250_000)], ids=["640x480", "1280x720"]
+)
+def test_the_clock_of_the_component(options, hz):
+    text = component(configure(**options), [Port("clk", 1, False, True)], [f"{TOP}.v"])
+    assert f"set_interface_property clock clockRate {hz}\n" in text
+
+
 def test_an_unknown_port_is_refused():
     with pytest.raises(ValueError, match="strange belongs to 0 interfaces"):
         component(small(), [Port("strange", 1, False, True)], [f"{TOP}.v"])
