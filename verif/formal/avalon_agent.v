@@ -117,8 +117,9 @@ reg [31:0] expected_1;
 always @* case (watched)
     ID: expected_1 = 32'h52415943;
     VERSION: expected_1 = VERSION_WORD;
-    ENGINE: expected_1 = ENGINE_WORD;
-    SIZE: expected_1 = SIZE_WORD;
+    ENGINE: expected_1 = CULLING << 30 | COLOUR_BITS << 24 | SCALE << 20 | REFLECTIONS << 16 | LIGHT << 14
+        | DIVIDER_BITS << 12 | PATTERNS << 11 | MATERIALS << 10 | TURN << 9 | NEAREST << 8 | FRACTION_BITS << 4 | !SEED;
+    SIZE: expected_1 = ROWS << 16 | RECTANGLES << 10 | UNITS;
     CONTROL: expected_1 = shadow_1 | (outstanding << 1);
     STATUS: expected_1 = {frame, 13'b0, status_bad, status_underrun, busy};
     CYCLES: expected_1 = {slowest_group, slowest_row};

@@ -42,7 +42,6 @@ from raycaster.engines.engine import SETUP_LATENCY
 from raycaster.engines.exact import AIM_CYCLES
 from raycaster.hdl.signals import bits_for
 from raycaster.registers import address_bits, register_map
-from raycaster.rtl.bus.avalon_interface import engine_word, size_word
 from raycaster.rtl.common import widths
 from raycaster.rtl.common.records import camera_of, candidate_of, look_fields, mirror_of, rect_of, surface_of
 from raycaster.screens import Screen
@@ -101,7 +100,7 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
         for name in (
             "rectangles", "reflections", "units", "pixels", "groups", "fraction_bits", "divider_bits", "colour_bits",
             "culling", "turn", "materials", "patterns", "light", "rect_cycles", "divider_steps", "pass_latency",
-            "group_cycles",
+            "group_cycles", "scale",
         )
     },
     "NEAREST": lambda config: config.rounding == "nearest",
@@ -118,8 +117,6 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
     # Registers.
     "ADDRESS_BITS": lambda config: address_bits(config.table),
     "VERSION_WORD": lambda config: register_map(config.table)["version"].reset,
-    "ENGINE_WORD": engine_word,
-    "SIZE_WORD": size_word,
     # Widths.
     **{
         name.upper(): lambda config, name=name: getattr(widths, name.upper())
