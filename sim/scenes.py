@@ -255,10 +255,10 @@ def run_all(runs: list[Design], models: dict[str, Model], sim: Path, jobs: int, 
 
 def show_cells(netlists: Mapping[str, Netlist], console: Console) -> None:
     """Print a table of the netlists' cells, one line per netlist."""
-    used = list({cell: None for netlist in netlists.values() for cell, count in netlist.cells.items() if count})
+    used = sorted({cell for netlist in netlists.values() for cell in netlist.cells})
     table = Table("netlist", *(cell.replace("_", "\n") for cell in used))
     for name, netlist in netlists.items():
-        table.add_row(name, *(netlist.cells[cell] for cell in used))
+        table.add_row(name, *(netlist.cells.get(cell, 0) for cell in used))
     console.print(table)
 
 
@@ -354,7 +354,7 @@ def command_parser() -> CommandParser:
     parser.add_argument(
         "--gates",
         action="store_true",
-        help="simulate the netlist that Yosys makes of the design from a chip's cells; the default is a small design "
+        help="simulate the design's netlist, as a bitstream's flow places it; the default is a small design "
         f"({', '.join(f'{name} {value}' for name, value in GATES_OPTIONS.items())})",
     )
     parser.add_argument(

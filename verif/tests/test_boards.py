@@ -20,9 +20,10 @@ from raycaster.design import Design, ProcessorDesign, design_for
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix
 from raycaster.fpga import bitstream
-from raycaster.fpga.bitstream import LOADER, Outcome, left_to_logic, make_bitstream, write_project
+from raycaster.fpga.bitstream import LOADER, Outcome, make_bitstream, write_project
 from raycaster.fpga.board import Board, BoardError, OpenBoard, board_names, find_board, load_board
 from raycaster.fpga.flows import FLOWS, clocks_for
+from raycaster.fpga.netlist import left_to_logic
 from raycaster.golden.engines import model_of
 from raycaster.golden.picture import shown
 from raycaster.rtl.system.camera_axis import STEP
