@@ -38,7 +38,8 @@ class ExactModel(Model):
         while True:
             bounce = Bounce.empty(len(rectangles), eye, slope, met, alive) if keep else None
             winner, (numerator, denominator) = _nearest(rectangles, eye, slope, mirror_t, met, bounce=bounce)
-            yield winner, (eye * denominator + slope * numerator).T, denominator, bounce
+            points = (eye * denominator + slope * numerator).T
+            yield Meeting(winner, points, denominator, slope.T.copy(), bounce)
             alive = (winner >= 0) & (rectangles.mirrors[winner] > 0)
             met &= numerator * mirror_t[1] == mirror_t[0] * denominator
             for axis in range(3):

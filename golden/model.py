@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
-from typing import SupportsIndex
+from typing import NamedTuple, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -89,8 +89,23 @@ class Bounce:
             getattr(self, name)[rectangle] = value
 
 
-Meeting = tuple[np.ndarray, np.ndarray, np.ndarray, Bounce | None]
-"""Winners, points and denominators of a pass, as in `Trace`, and its `Bounce` if that is kept."""
+class Meeting(NamedTuple):
+    """Hits of rays between two mirrors; a later meeting changes none of these arrays."""
+
+    winners: np.ndarray
+    """As in `Trace`."""
+
+    points: np.ndarray
+    """As in `Trace`."""
+
+    denominators: np.ndarray
+    """As in `Trace`."""
+
+    slopes: np.ndarray
+    """(rays, 3): slopes of the rays that met these winners."""
+
+    bounce: Bounce | None
+    """All other values, if they are kept."""
 
 
 @dataclass(frozen=True)
@@ -161,14 +176,12 @@ class Model(ABC):
         for meeting in islice(self.meetings(rectangles, origin, slope, keep=keep), reflections + 1):
             colours = hit_colours(rectangles, background, *meeting[:3])
             if light:
-                # The slope is still that of the ray that hit, as `meetings` changes it only for the next one.
-                shading = shade(rectangles, light, *meeting[:3], slope.T)
-                dark = (meeting[0] >= 0) & ~shading.lit
-                dim(colours, dark, light)
+                shading = shade(rectangles, light, *meeting[:4])
+                dim(colours, (meeting.winners >= 0) & ~shading.lit, light)
                 shadings.append(shading)
             met.append(meeting)
             seen.append(colours)
-        winners, points, denominators, bounces = zip(*met, strict=True)
+        winners, points, denominators, _, bounces = zip(*met, strict=True)
         colours = blend(seen, [rectangles.mirrors[winner] for winner in winners])
         return Trace(colours, winners, tuple(seen), tuple(shadings), points, denominators, bounces if keep else ())
 

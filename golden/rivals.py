@@ -157,7 +157,7 @@ class RivalModel(Model):
                 np.copyto(nearest, t, where=hit)
             origin = np.where(winner >= 0, number.plus(origin, number.times(slope, nearest)), origin)
             points = number.units(origin).T
-            yield winner, points, np.full(len(points), 1 << POINT_BITS), None
+            yield Meeting(winner, points, np.full(len(points), 1 << POINT_BITS), slope.T.copy(), None)
             alive = (winner >= 0) & (rectangles.mirrors[winner] > 0)
             for axis in range(3):
                 slope[axis, alive & (rectangles.axes[winner] == axis)] *= -1

@@ -50,7 +50,7 @@ class SeedModel(Model):
         while True:
             bounce = Bounce.empty(len(rectangles), origin, slope, met, alive) if keep else None
             winner, origin = self._nearest(rectangles, origin, slope, alive, bounce=bounce)
-            yield winner, origin.T, scale, bounce
+            yield Meeting(winner, origin.T, scale, slope.T.copy(), bounce)
             alive = (winner >= 0) & (rectangles.mirrors[winner] > 0)
             for axis in range(3):
                 slope[axis, alive & (rectangles.axes[winner] == axis)] *= -1

@@ -6,9 +6,9 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from dataclasses import replace
+from dataclasses import fields, replace
 from fractions import Fraction
-from itertools import product
+from itertools import islice, product
 
 import numpy as np
 import pytest
@@ -29,6 +29,7 @@ from raycaster.golden.random_world import (
     random_slopes,
 )
 from raycaster.golden.rays import primary_slopes
+from raycaster.golden.rivals import RIVALS
 from raycaster.golden.seed_engine import SeedModel, divide
 from raycaster.golden.world import Rectangles
 from raycaster.scene import Camera, Scene, load_scene, packaged_scenes
@@ -202,6 +203,24 @@ def test_the_page_says_what_golden_draws(name):
         for ray, number in enumerate(chosen):
             slope = slope_of(page, camera, *divmod(number, screen.columns))
             compare(trace, ray, follow(table, scene.background, camera.position, slope, reflections, scene.light))
+
+
+@pytest.mark.parametrize("model", [ExactModel(), SeedModel(1), RIVALS["q18.14"]], ids=lambda one: type(one).__name__)
+def test_a_trace_needs_no_order(model, random):
+    """Following rays to the end before their colours are computed gives the same pictures, in the light too."""
+    mirrors = 3
+
+    class Eager(type(model)):
+        def meetings(self, *arguments, **options):
+            return iter(list(islice(super().meetings(*arguments, **options), mirrors + 1)))
+
+    eager = Eager(**{one.name: getattr(model, one.name) for one in fields(model)})
+    for _ in range(30):
+        table, camera, slopes = any_world(random)
+        light = random_light(random, table, camera) if isinstance(model, ExactModel) else None
+        in_turn, found = (one.trace(table, camera, BACKGROUND, slopes, mirrors, light=light) for one in (model, eager))
+        for name in ("colours", "winners", "points", "denominators"):
+            assert np.array_equal(getattr(in_turn, name), getattr(found, name)), name
 
 
 @pytest.mark.parametrize("place", BEAM_SCREENS, ids=str)
