@@ -76,7 +76,12 @@ class Options:
         "budget (exact) or one per pixel of a clock (beam)",
     )
     rectangles: Whole = Field(12, ge=1, le=MOST_RECTANGLES, description="capacity of the scene memory, in rectangles")
-    reflections: Whole = Field(1, ge=0, le=MOST_REFLECTIONS, description="most reflections per ray")
+    reflections: Whole = Field(
+        1,
+        ge=0,
+        le=MOST_REFLECTIONS,
+        description="most reflections per ray; if not given, the scene's number or, without a scene, the default",
+    )
     rows: Whole | None = Field(
         None,
         description="rows of rays: 240 (640x480@60), 200 (640x400@70); seed and exact: 120, 96 or 60 (640x480@60 at "

@@ -42,6 +42,9 @@ UNTURNED = ((BASIS_SCALE, 0, 0), (0, BASIS_SCALE, 0), (0, 0, BASIS_SCALE))
 PATTERNS = ("plain", "checker", "rows", "columns")
 """Pattern names, in the order of their register codes."""
 
+PATTERN_KEYS = ("colour2", "cell")
+"""Keys of a rectangle that only a pattern has."""
+
 CELLS = (8, 16, 32, 64, 128, 256)
 """Sizes of a pattern's cells, in world units, in the order of their register codes."""
 
@@ -57,7 +60,7 @@ COMPLAINTS = {
     "model_type": "must be a table",
     "string_type": "must be a string in quotes",
     "no_colour2": "a pattern has a second colour; give colour2 with {pattern}",
-    "no_pattern": f"colour2 is for a pattern; give pattern = {listed(map(json.dumps, PATTERNS[1:]))}",
+    "no_pattern": f"{{key}} is for a pattern; give pattern = {listed(map(json.dumps, PATTERNS[1:]))}",
     "too_many": (
         "rect: {count} rectangles, but the hardware holds {rectangles}; remove some or build it with RECTANGLES={count}"
     ),
@@ -245,8 +248,8 @@ class Rectangle(_Strict):
     def _check_pattern(self) -> Rectangle:
         if self.pattern != "plain" and self.colour2 is None:
             raise ValueError(COMPLAINTS["no_colour2"].format(pattern=self.pattern))
-        if self.pattern == "plain" and self.colour2 is not None:
-            raise ValueError(COMPLAINTS["no_pattern"])
+        if self.pattern == "plain" and (useless := [key for key in PATTERN_KEYS if key in self.model_fields_set]):
+            raise ValueError(COMPLAINTS["no_pattern"].format(key=useless[0]))
         return self
 
     @property

@@ -26,7 +26,7 @@ from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_
 from raycaster.output import Console, replaced
 from raycaster.play.walk import DRAG, STEEPEST, STEP, TURN, TURNS, WALKS
 from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
-from raycaster.scene import COMPLAINTS, PATTERNS, Scene, packaged_scenes
+from raycaster.scene import COMPLAINTS, PATTERN_KEYS, PATTERNS, Scene, packaged_scenes
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
 from raycaster.web.browser import browser_page
@@ -102,7 +102,7 @@ def scene_schema() -> dict[str, object]:
     `model` is the JSON schema of `Scene`: tables, their keys in order, defaults, and the `checks` of each value in the
     order in which they are applied. `complaints` are the other messages, with placeholders in braces. `longest_shown`
     is in characters, and `most_rectangles` is the limit of any hardware. `patterns` are in the order of the register
-    codes.
+    codes, and `pattern_keys` are the keys that only a pattern has.
     """
     return {
         "model": Scene.model_json_schema(),
@@ -110,6 +110,7 @@ def scene_schema() -> dict[str, object]:
         "longest_shown": LONGEST_SHOWN,
         "most_rectangles": MOST_RECTANGLES,
         "patterns": list(PATTERNS),
+        "pattern_keys": list(PATTERN_KEYS),
     }
 
 

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections import Counter
 from dataclasses import fields, replace
+from decimal import Decimal, localcontext
 from fractions import Fraction
 from itertools import islice, product
+from math import floor
 
 import numpy as np
 import pytest
@@ -16,9 +17,10 @@ from conftest import ROOT
 from definition import compare, exact_hit, follow, quotient, seed_hit
 
 from raycaster.configuration import configure
+from raycaster.engines import BEAM
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
-from raycaster.golden.picture import WRONG, count_wrong, diff_picture, first_wrong, wrong_pixels
+from raycaster.golden.picture import WRONG, count_wrong, diff_picture, first_wrong, shown, wrong_pixels
 from raycaster.golden.random_world import (
     random_basis,
     random_camera,
@@ -137,22 +139,40 @@ TURNED = {"yaw": 31.0, "pitch": -17.5, "roll": 9.0}
 def screen_of_the_page(name: str) -> dict[str, int]:
     """Read a screen's numbers from the page's table."""
     [row] = re.findall(rf"^\| `{name}` \|(.*)\|$", PAGE, re.M)
-    return dict(zip(("columns", "rows", "centre", "horizon", "distance"), map(int, row.split("|")), strict=True))
+    names = ("columns", "rows", "centre", "horizon", "distance", "pixels")
+    return dict(zip(names, map(int, row.split("|")), strict=True))
+
+
+def exact_basis(camera: Camera) -> list[list[Decimal]]:
+    """Compute the camera's vectors times 256 as the page says, before they are rounded, to 30 digits."""
+
+    def sine(degrees: Decimal) -> Decimal:
+        x = degrees % 360 * Decimal("3.14159265358979323846264338327950288419716939937510") / 180
+        term = total = x
+        for n in range(2, 120, 2):
+            term *= -x * x / (n * (n + 1))
+            total += term
+        return total
+
+    with localcontext(prec=50):
+        angles = [Decimal(angle) for angle in (camera.yaw, camera.pitch, camera.roll)]
+        (sy, sp, sr), (cy, cp, cr) = (map(sine, each) for each in (angles, [90 - angle for angle in angles]))
+        forward = cy * cp, sy * cp, sp
+        right = -sy * cr - cy * sp * sr, cy * cr - sy * sp * sr, cp * sr
+        up = sy * sr - cy * sp * cr, -cy * sr - sy * sp * cr, cp * cr
+        return [[round(256 * part, 30) for part in vector] for vector in (forward, right, up)]
 
 
 def basis_of(camera: Camera) -> list[list[int]]:
     """Compute the camera's basis as the page says."""
     if not (camera.yaw or camera.pitch or camera.roll):
         return [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
-    angles = [math.radians(angle) for angle in (camera.yaw, camera.pitch, camera.roll)]
-    (cy, cp, cr), (sy, sp, sr) = map(math.cos, angles), map(math.sin, angles)
-    forward = cy * cp, sy * cp, sp
-    right = -sy * cr - cy * sp * sr, cy * cr - sy * sp * sr, cp * sr
-    up = sy * sr - cy * sp * cr, -cy * sr - sy * sp * cr, cp * cr
-    return [[round(256 * part) for part in vector] for vector in (forward, right, up)]
+    return [[floor(part + Decimal("0.5")) for part in vector] for vector in exact_basis(camera)]
 
 
-def slope_of(screen: dict[str, int], camera: Camera, row: int, column: int) -> list[int]:
+def slope_of(
+    screen: dict[str, int], camera: Camera, row: int | Fraction, column: int | Fraction
+) -> list[int | Fraction]:
     """Compute a pixel's primary ray as the page says."""
     factors = screen["distance"], column - screen["centre"], screen["horizon"] - row
     return [sum(a * b for a, b in zip(factors, parts, strict=True)) for parts in zip(*basis_of(camera), strict=True)]
@@ -169,16 +189,38 @@ def table_of(scene: Scene) -> Rectangles:
 
 
 @pytest.mark.parametrize("name", re.findall(r"^\| `(\w+=\w+)` \|", PAGE, re.M))
-def test_the_table_of_screens(name):
-    option, value = name.split("=")
-    key = ("vga", int(value)) if option == "ROWS" else (value, 48)
-    screen, page = (SCREENS | BEAM_SCREENS)[key], screen_of_the_page(name)
+def test_the_table_of_screens(name, random):
+    """Each screen has the page's numbers, at every scale, and the monitor's pixels show the rays that the page says."""
+    option, value = name.lower().split("=")
+    place = ("vga", int(value)) if option == "rows" else next(key for key in BEAM_SCREENS if key[0] == value)
+    screen, page = (BEAM_SCREENS | SCREENS)[place], screen_of_the_page(name)
     found = screen.columns, screen.rows, screen.centre_column, screen.horizon_row, screen.view_distance
-    assert tuple(page.values()) == found
-    slopes, camera = primary_slopes(screen), Camera(position=(0, 0, 0))
-    assert slopes.shape == (screen.rows, screen.columns, 3)
-    for row, column in ((0, 0), (screen.horizon_row, screen.centre_column), (screen.rows - 1, screen.columns - 1)):
-        assert slopes[row, column].tolist() == slope_of(page, camera, row, column)
+    assert tuple(page.values()) == (*found, screen.doubling)
+    engine, nowhere = "beam" if place in BEAM_SCREENS else "seed", Camera(position=(0, 0, 0))
+    for scale in BEAM.scales(screen) if engine == "beam" else (1,):
+        config = configure(engine=engine, screen=place[0], rows=place[1], scale=scale)
+        slopes, pixels = primary_slopes(config.screen_geometry), (6 if scale % 3 == 0 else page["pixels"]) // scale
+        assert slopes.shape == (page["rows"] * scale, page["columns"] * scale, 3)
+        picture = random.integers(256, size=slopes.shape).astype(np.uint8)
+        monitor, timing = shown(picture, config), config.screen_geometry
+        assert monitor.shape == (timing.vertical.visible, timing.horizontal.visible, 3)
+        for line, pixel in random.integers(monitor.shape[:2], size=(9, 2)).tolist():
+            row, column = line // pixels, pixel // pixels
+            assert monitor[line, pixel].tolist() == picture[row, column].tolist()
+            ray = slope_of(page, nowhere, Fraction(row, scale), Fraction(column, scale))
+            assert slopes[row, column].tolist() == [scale * part for part in ray]
+
+
+def test_the_basis_is_rounded_from_exact_values(random):
+    """The camera's vectors are those of exact angles; no component is near the middle between two whole numbers."""
+    special = [0, 30, 45, 60, 90, 120, 180, 270, 360, 0.01, 89.99]
+    for _ in range(300):
+        yaw, pitch, roll = (float(random.choice(special) if random.random() < 0.5 else random.random() * 720 - 360)
+            for _ in range(3))  # fmt: skip
+        exact = exact_basis(Camera(position=(0, 0, 0), yaw=yaw, pitch=pitch, roll=roll))
+        rounded = [[floor(part + Decimal("0.5")) for part in vector] for vector in exact]
+        assert np.array_equal(Camera(position=(0, 0, 0), yaw=yaw, pitch=pitch, roll=roll).basis, rounded)
+        assert all(abs(part % 1 - Decimal("0.5")) > 1e-9 for vector in exact for part in vector)
 
 
 @pytest.mark.parametrize("name", packaged_scenes())

@@ -157,7 +157,10 @@ MISTAKES = [
                 " cell: must be 8, 16, 32, 64, 128 or 256, not 32.0",
             ),
             ('pattern = "rows"', ": a pattern has a second colour; give colour2 with rows"),
-            ('colour2 = "#000000"', ': colour2 is for a pattern; give pattern = "checker", "rows" or "columns"'),
+            *(
+                (line, f': {line.split()[0]} is for a pattern; give pattern = "checker", "rows" or "columns"')
+                for line in ('colour2 = "#000000"', "cell = 8", "cell = 32")
+            ),
         )
     ),
     # Not TOML.

@@ -109,7 +109,8 @@ const RayCasterScene = (() => {
       const pattern = value.pattern ?? rule.properties.pattern.default;
       const isPlain = pattern === schema.patterns[0];
       if (!isPlain && !("colour2" in value)) return wrong(fill(schema.complaints.no_colour2, { pattern }));
-      if (isPlain && "colour2" in value) return wrong(schema.complaints.no_pattern);
+      const key = schema.pattern_keys.find((one) => one in value);
+      if (isPlain && key) return wrong(fill(schema.complaints.no_pattern, { key }));
     }
     return [];
   }
