@@ -2,12 +2,13 @@
 // A clock gate.
 //
 // Define CLOCK_GATING for simulators, which then skip blocks whose clock is stopped, and for chips whose tools support
-// clock gates. Without it, as on FPGAs, gated_clk is clk and awake is unused.
+// clock gates. Without it, as on FPGAs, gated_clk is clk, and reset and awake are unused.
 
 `timescale 1ns/10ps
 
 module clock_gate (
     input  wire clk,
+    input  wire reset,
     input  wire awake,
     output wire gated_clk
 );
@@ -18,7 +19,7 @@ reg open;
 // The latch is transparent only while clk is low, so no clock pulse is cut short.
 always @* begin: LATCH
     if (!clk)
-        open = awake;
+        open = awake || reset;
 end
 
 assign gated_clk = clk & open;

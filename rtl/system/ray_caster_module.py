@@ -81,9 +81,9 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
 
         @always_comb
         def wake():
-            scene_awake.next = reset or bus.write or bus.commit or bus.go_live or progress.busy
+            scene_awake.next = bus.write or bus.commit or bus.go_live or progress.busy
 
-        gate = clock_gate(clk, awake=scene_awake, gated_clk=scene_clk)
+        gate = clock_gate(clk, reset, awake=scene_awake, gated_clk=scene_clk)
     renderer = RENDERERS.get(config.engine, ray_caster_renderer)(
         clk, reset, picture=picture, camera=camera, rects=rects, progress=progress, vga=vga, config=config
     )

@@ -56,7 +56,7 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
         clk=caster_clk, reset_ray_caster=reset_ray_caster, enable=enable, place=place, camera=camera, picture=picture,
         rects=rects, done=done, pixels=pixels, config=config,
     )  # fmt: skip
-    gate = clock_gate(clk, awake=caster_awake, gated_clk=caster_clk)
+    gate = clock_gate(clk, reset, awake=caster_awake, gated_clk=caster_clk)
     buffers = [
         line_buffer(
             clk=clk, write=done, line_buf_sel=line_buf_sel, write_offset=place.column_offset,

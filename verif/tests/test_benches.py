@@ -148,13 +148,13 @@ FAULTS = {
 """Module, right and wrong Verilog, and the complaint."""
 
 RESTING = {
-    "the-other-way": ("clock_gate", "open = awake;", "open = !awake;", "non-0/1"),
+    "the-other-way": ("clock_gate", "open = awake || reset;", "open = !awake;", "non-0/1"),
     "rendering": ("ray_caster_renderer", "enable || reset_ray_caster", "reset_ray_caster", "cycles reads"),
-    "a-write": ("ray_caster_module", "|| bus_write ", "", "reads 0x"),
+    "a-write": ("ray_caster_module", "bus_write || ", "", "reads 0x"),
     "a-commit": ("ray_caster_module", "|| bus_commit ", "", "pixels are wrong"),
     "start-screen": ("ray_caster_module", "|| bus_go_live ", "", "pixels are wrong"),
     "a-fetch": ("ray_caster_module", "|| progress_busy", "", "pixels are wrong"),
-    "a-reset": ("ray_caster_module", "= reset ||", "=", "reads 0x"),
+    "a-reset": ("clock_gate", "awake || reset", "awake", "reads 0x"),
 }
 """Faults that let a clock rest too long: each reason to wake it is left out alone."""
 

@@ -84,21 +84,21 @@ def hold(clock, value, held):
 
 
 @block
-def two_clocks(clk, awake, value, steady, resting):
+def two_clocks(clk, reset, awake, value, steady, resting):
     """A register on the free-running clock, and one on a clock that rests in the cycle after one without `awake`."""
     awake_now, resting_clk = bit(), derived_clock(clk)
     waking = hold(clk, awake, awake_now)
     going_on = hold(clk, value, steady)
     at_rest = hold(resting_clk, value, resting)
-    gate = clock_gate(clk, awake_now, resting_clk)
+    gate = clock_gate(clk, reset, awake_now, resting_clk)
 
     return waking, going_on, at_rest, gate
 
 
 def test_a_clock_rests(tmp_path, random):
-    """It rests in Verilog with CLOCK_GATING only."""
-    names = ("value", "steady", "resting")
-    leaf = Leaf(two_clocks, lambda: {"clk": bit(), "awake": bit(), **{name: unsigned(4) for name in names}}, tmp_path)
+    """It rests in Verilog with CLOCK_GATING only, and never during reset."""
+    widths = dict.fromkeys(("clk", "reset", "awake"), 1) | dict.fromkeys(("value", "steady", "resting"), 4)
+    leaf = Leaf(two_clocks, lambda: {name: unsigned(w) if w > 1 else bit() for name, w in widths.items()}, tmp_path)
     stimulus = [{"awake": 1, "value": 0}, *random_inputs(leaf, random, 50)]
     outputs = leaf.run_both(stimulus, settled=1)
     assert all(cycle["resting"] == cycle["steady"] for cycle in outputs)
@@ -106,7 +106,7 @@ def test_a_clock_rests(tmp_path, random):
     leaf.verilog = [tmp_path / "gating.v", *leaf.verilog]
     taken = 0
     for before, inputs, after in zip(stimulus[:-2], stimulus[1:-1], leaf.run_verilog(stimulus)[2:], strict=True):
-        taken = inputs["value"] if before["awake"] else taken
+        taken = inputs["value"] if before["awake"] or inputs["reset"] else taken
         assert after["resting"] == taken
 
 
