@@ -88,6 +88,9 @@ VERILATOR_FLAGS = (
 )
 
 
+UNGATED_FLAGS = tuple(flag for flag in VERILATOR_FLAGS if flag != GATING_FLAG)
+"""Flags for Verilator that simulate the design as it goes to an FPGA."""
+
 FST_HEADERS = ("lz4.h", "zlib.h")
 """Headers that Verilator's FST writer includes, and that a machine may lack; its VCD writer needs none."""
 

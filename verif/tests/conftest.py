@@ -11,7 +11,7 @@ import re
 import shutil
 import subprocess
 import sysconfig
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -31,7 +31,7 @@ from raycaster.hdl.verilog_style import without_power_up
 from raycaster.options import outside_make, run_command
 from raycaster.output import MARK
 from raycaster.sim.job import Job
-from raycaster.sim.simulator import MODELS_VARIABLE, build_model, convert, find_tool, run_bench
+from raycaster.sim.simulator import MODELS_VARIABLE, VERILATOR_FLAGS, build_model, convert, find_tool, run_bench
 from raycaster.verif import seeds
 from raycaster.verif.recording import RECORD_VARIABLE, record_test
 from raycaster.verif.seeds import repeat, seed
@@ -170,6 +170,7 @@ def bench(output: Path, tmp_path_factory: pytest.TempPathFactory) -> Bench:
         *,
         verilog: list[Path] | None = None,
         defines: Mapping[str, int] | None = None,
+        flags: Sequence[str] = VERILATOR_FLAGS,
         seeds: tuple[int, ...] = (),
         plusargs: tuple[str, ...] = (),
     ) -> Path:
@@ -179,7 +180,7 @@ def bench(output: Path, tmp_path_factory: pytest.TempPathFactory) -> Bench:
             verilog = [directory / file.name for file in files]
             for file, copy in zip(files, verilog, strict=True):
                 copy.write_text(without_power_up(file.read_text()))
-        model = build_model(configuration, simulator, build=BUILD, verilog=verilog, defines=defines)
+        model = build_model(configuration, simulator, build=BUILD, verilog=verilog, defines=defines, flags=flags)
         job = Job(
             configuration, scene=str(scene), output=str(output), reflections=configuration.reflections, seeds=seeds
         )

@@ -13,37 +13,59 @@ from conftest import SMALL_SCENE, Bench
 from PIL import Image
 
 from raycaster.configuration import Configuration, configure
-from raycaster.design import packaged_for
+from raycaster.design import design_for, packaged_for
 from raycaster.engines import ENGINES
+from raycaster.fit.fixing import fix
 from raycaster.golden.exact import ExactModel
 from raycaster.scene import load_scene, packaged_scenes
+from raycaster.sim.simulator import UNGATED_FLAGS
+from raycaster.verif.seeds import seed
 
 PLAIN = packaged_scenes(plain=True)
 
 
 def drawn(bench: Bench, design: Configuration, scene: Path) -> tuple[dict, Path]:
-    """Draw a scene in Verilator without a wrong or a late pixel; return the result, and the directory with it."""
-    directory = bench("sim.frame_bench", design, "verilator", scene)
+    """Draw a scene without a wrong or a late pixel; return the result, and the directory with it.
+
+    All clocks run all the time, as on an FPGA; in most other simulations with Verilator they rest.
+    """
+    directory = bench("sim.frame_bench", design, "verilator", scene, flags=UNGATED_FLAGS)
     result = json.loads((directory / "result.json").read_text())
     size = design.screen_geometry.horizontal.visible * design.screen_geometry.vertical.visible
     assert (result["pixels"], result["wrong_vs_golden"], result["underrun"]) == (size, 0, False), scene.stem
     return result, directory
 
 
+FULL_SIZE = {
+    **{name: ("seed", path, None) for name, path in PLAIN.items()},
+    "exact": ("exact", PLAIN["mirror_room"], None),
+    "looks": ("exact", packaged_scenes()["evening"], None),
+    "fixed": ("exact", packaged_scenes()["evening"], "all"),
+}
+"""Engine, scene, and what of the scene is built in."""
+
+
 @pytest.mark.slow_sets(quick=["boxes"])
-@pytest.mark.parametrize(
-    ("engine", "scene"),
-    [*(("seed", path) for path in PLAIN.values()), ("exact", PLAIN["mirror_room"])],
-    ids=[*PLAIN, "exact"],
-)
-def test_full_size(bench: Bench, engine, scene):
-    """Every scene that the default design can draw, and one in the exact engine, as `make sim` shows them."""
-    contents = load_scene(scene)
-    design = configure(engine=engine, rows=contents.rows, reflections=contents.reflections)
+@pytest.mark.parametrize("case", FULL_SIZE)
+def test_full_size(bench: Bench, case):
+    """Every scene that the default design can draw, and some in the exact engine, as `make sim` shows them."""
+    engine, scene, scope = FULL_SIZE[case]
+    options = {"engine": engine}
+    made = fix(scene, options, scope).design if scope else design_for(scene, options)
+    design = made.configuration
     result, _ = drawn(bench, design, scene)
-    assert result["pixels"] == 640 * 2 * contents.rows
+    assert result["pixels"] == 640 * 2 * made.scene.rows
     assert result["worst_group_cycles"] <= design.group_budget
     assert result["worst_row_cycles"] < design.screen_geometry.row_cycles
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_hundred_scenes(bench: Bench, engine):
+    """Random scenes with all looks; all clocks run all the time, as on an FPGA."""
+    first, looks = 100 * seed(), dict.fromkeys(ENGINES[engine].looks, True)
+    design = configure(engine=engine, screen="tiny", reflections=2, **looks)
+    bench("verif.soak.bench", design, "verilator", seeds=tuple(range(first, first + 100)), flags=UNGATED_FLAGS)
 
 
 @pytest.mark.slow_sets("beam", "seed")
