@@ -12,7 +12,6 @@ module dvi_board (
 );
 
 wire clk, shift_clk;
-wire ready = locked & run;
 wire [7:0] vga_r, vga_g, vga_b;
 wire vga_hs, vga_vs, vga_blank_n, vga_clk;
 wire [9:0] blue, green, red;
@@ -30,7 +29,7 @@ board_clocks clocks (
 
 board_design shown (
     .clk(clk),
-    .ready(ready),
+    .ready(locked & run),
     .buttons(buttons),
     .uart_tx(serial),
     .vga_r(vga_r),
@@ -44,7 +43,6 @@ board_design shown (
 
 dvi_encoder encoder (
     .clk(clk),
-    .ready(ready),
     .pixel_end(pixel_end),
     .vga_r(vga_r),
     .vga_g(vga_g),

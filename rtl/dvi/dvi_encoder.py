@@ -8,7 +8,7 @@ from raycaster.rtl.dvi.tmds_encoder import tmds_encoder
 
 
 @block
-def dvi_encoder(clk, ready, pixel_end, vga, blue, green, red, pixel):
+def dvi_encoder(clk, pixel_end, vga, blue, green, red, pixel):
     """Encode a VGA output for a DVI link.
 
     Channel 0 carries blue and the syncs, 1 green, 2 red, as in DVI 1.0, section 2.2.3.
@@ -18,13 +18,12 @@ def dvi_encoder(clk, ready, pixel_end, vga, blue, green, red, pixel):
 
     Args:
         clk: the clock.
-        ready: flag; low holds pixel low. May change at any time.
         pixel_end: flag; high in the last cycle of a pixel, which takes one or two cycles of clk.
         vga: `Vga` of ray_caster_module, 8 bits per colour; r, g, b, hs, vs and blank_n are read.
         blue: unsigned output, 10 bits; the symbol of channel 0, stable for a pixel.
         green: unsigned output, 10 bits; the symbol of channel 1, stable for a pixel.
         red: unsigned output, 10 bits; the symbol of channel 2, stable for a pixel.
-        pixel: output flag; changes with the symbols, once per pixel. Low from the cycle after ready is low.
+        pixel: output flag; changes with the symbols, once per pixel.
     """
     syncs, none = unsigned(2), tied(0, 2)
     marked = bit()
@@ -35,9 +34,7 @@ def dvi_encoder(clk, ready, pixel_end, vga, blue, green, red, pixel):
 
     @always(clk.posedge)
     def mark():
-        if not ready:
-            marked.next = False
-        elif pixel_end:
+        if pixel_end:
             marked.next = not marked
 
     @always_comb

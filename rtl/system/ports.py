@@ -37,4 +37,4 @@ def system_ports(config: Configuration) -> dict[str, Any]:
 def dvi_ports() -> dict[str, Any]:
     """Return the ports of dvi_encoder."""
     symbols = {channel: unsigned(SYMBOL_BITS) for channel in ("blue", "green", "red")}
-    return {"clk": bit(), "ready": bit(), "pixel_end": bit(), "vga": Vga(CHANNEL_BITS), **symbols, "pixel": bit()}
+    return {"clk": bit(), "pixel_end": bit(), "vga": Vga(CHANNEL_BITS), **symbols, "pixel": bit()}
