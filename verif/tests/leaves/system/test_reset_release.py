@@ -19,3 +19,11 @@ def test_reset_release(leaf_of, random):
         window = ready[max(0, cycle - HOLD_CYCLES - 2) : max(0, cycle - 2)]
         leaf.case({"ready": value}, {"reset": not (all(window) and len(window) == HOLD_CYCLES)})
     leaf.check(settled=4)
+
+
+def test_power_up_resets(leaf_of):
+    """Without a low ready, reset lasts as long as it does after one, because the registers begin at 0."""
+    leaf = leaf_of(reset_release, reset=bit)
+    for cycle in range(3 * HOLD_CYCLES):
+        leaf.case({"ready": 1}, {"reset": cycle < HOLD_CYCLES + 2})
+    leaf.check()

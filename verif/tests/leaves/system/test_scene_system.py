@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf test of `scene_system`: the scene loads itself, and buttons move the camera from frame to frame."""
+"""Leaf test of `scene_system`: the scene loads itself, also at power-up, and buttons move the camera every frame."""
 
 import numpy as np
 from engine_vectors import TINY_SCREEN, check_frames, golden_words, scene_in_view, small_config, start_cycle
@@ -10,6 +10,7 @@ from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.verilog_style import without_power_up
 from raycaster.rtl.system.camera_axis import STEP
 from raycaster.rtl.system.ports import scene_system_ports
 from raycaster.rtl.system.reset_release import HOLD_CYCLES
@@ -50,7 +51,20 @@ def test_scene_system(tmp_path, random):
     stimulus += [{"ready": 1, "buttons": 0}] * screen.frame_cycles
     leaf = Leaf(scene_system, lambda: scene_system_ports(config) | {"config": config, "scene": scene}, tmp_path)
     outputs = leaf.run_both(stimulus, settled=ready)
-    check_frames(outputs[start:], config, [golden_words(config, picture) for picture in pictures])
+    words = [golden_words(config, picture) for picture in pictures]
+    check_frames(outputs[start:], config, words)
+    # Powers up with ready high and all registers unknown, except those that release the reset.
+    [release] = [module for module in leaf.modules if module.name == "reset_release"]
+    (tmp_path / "unknown").mkdir()
+    leaf.verilog = []
+    for module in leaf.modules:
+        text = module.path.read_text()
+        begins = module.name in (release.name, *release.instances.values())
+        leaf.verilog.append(tmp_path / "unknown" / module.path.name)
+        leaf.verilog[-1].write_text(text if begins else without_power_up(text))
+    frames = 3
+    power_up = leaf.run_verilog(stimulus[ready : start + (frames + 1) * screen.frame_cycles])[start - ready :]
+    check_frames(power_up, config, words[:frames])
 
 
 def walk(camera: np.ndarray, holds: np.ndarray) -> list[np.ndarray]:
