@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster verify dvi`: decode the DVI output of a simulated board, as a monitor does.
+"""`raycaster verify dvi`: decode the video output of a simulated board, as a monitor does.
 
 The timing is checked against the standard, and every pixel is compared with the golden model.
 """
@@ -17,10 +17,12 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from raycaster.configuration import Configuration
 from raycaster.design import Design
+from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.bitstream import write_project
-from raycaster.fpga.board import OpenBoard, board_names, find_board
+from raycaster.fpga.board import Board, OpenBoard, QuartusBoard, board_names, find_board
 from raycaster.golden.engines import model_of
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
@@ -31,48 +33,131 @@ from raycaster.scene import find_scene
 from raycaster.screens import Screen
 from raycaster.sim.monitor import Line, VideoError, decode_frame
 from raycaster.sim.simulator import SimulationError, add_simulator_option, build_program
+from raycaster.verif.dvi.wiring import PIN_FILES, device, read_pin_file, wiring_of
 
 SYMBOL_BITS = 10
+MASKS = 8
+"""Number of settings of the buttons in a simulation."""
+ALLOWED = 0.005
+"""Error of a pixel clock that VESA DMT allows."""
+
 HERE = Path(__file__).parent
 _CHANNELS = ("blue", "green", "red", "clock")
 
+_LINK = """
+    // Symbols must be stable for this many cycles of shift_clk before and after they are sampled.
+    localparam real STILL_CYCLES = 1.5;
+    wire sample = top.board.shift_clk;
+    wire [3:0] value = {value};
+    integer unsteady = 0;
+    realtime changed = 0, taken = 0, rose = 0, cycle = 0;
+
+    // Changes near the edge that samples them arrive a cycle early, or not, in the synchroniser of the two clocks.
+    always @(posedge top.board.shift_clk) begin
+        cycle = $realtime - rose;
+        rose = $realtime;
+        #0.1;
+        if ($random % 2)
+            top.board.serialiser.arriving = top.board.serialiser.held_pixel;
+    end
+
+    always @(top.board.serialiser.blue_lane.held, top.board.serialiser.green_lane.held,
+             top.board.serialiser.red_lane.held) begin
+        changed = $realtime;
+        if (board_bench.recording && changed - taken < STILL_CYCLES * cycle)
+            unsteady = unsteady + 1;
+    end
+
+    always @(posedge top.board.shift_clk)
+        if (board_bench.recording && top.board.serialiser.blue_lane.load_here) begin
+            taken = $realtime;
+            if (taken - changed < STILL_CYCLES * cycle)
+                unsteady = unsteady + 1;
+        end
+"""
+"""Part of a board with a DVI link. A pair whose wires are not each other's inverse is x."""
+
+_PARALLEL = """
+    // Data must be stable around the rising edge of the clock.
+    localparam real STILL_NS = 3;
+    reg sample = 1'b0;
+    wire [27:0] value = {{hs, vs, blank_n, {sync_n}, red[9:2], green[9:2], blue[9:2]}};
+    integer unsteady = 0;
+    realtime changed = 0, taken = 0;
+
+    always @(posedge dac_clock) begin
+        taken = $realtime;
+        if (board_bench.recording && taken - changed < STILL_NS)
+            unsteady = unsteady + 1;
+        sample = ~sample;
+    end
+
+    always @(value) begin
+        changed = $realtime;
+        if (board_bench.recording && changed - taken < STILL_NS)
+            unsteady = unsteady + 1;
+    end
+"""
+"""Part of a board with a DAC or a transmitter."""
+
 
 def watch(
-    board: OpenBoard,
+    board: Board,
     sources: Sequence[Path],
-    screen: Screen,
+    design: Configuration,
     frames: int,
     directory: Path,
     *,
     simulator: str = "verilator",
-    buttons: int = 0,
+    buttons: Sequence[int] = (0,),
     late_ns: int = 0,
+    again: int = 0,
 ) -> list[np.ndarray]:
-    """Simulate the board and return the first frames that its DVI connector sends after reset, as `pictures` does.
+    """Simulate the board and return the first frames that its monitor sees after reset.
+
+    The board's parts are connected to the chip's pins by `wiring.WIRING`.
 
     Args:
-        board: the board.
-        sources: the board's Verilog, the design's included.
-        screen: the design's screen.
+        board: the board; its monitor is on a DVI link, a transmitter, or a DAC with a clock.
+        sources: the board's Verilog, the design's included; the last one is the top, with the pin file beside it.
+        design: the design.
         frames: number of frames.
         directory: for the recording.
         simulator: one of `raycaster.sim.simulator.SIMULATORS`; only Icarus knows unknown bits.
-        buttons: a bit for each button that is held all the time, in the order of `scene_player.BUTTONS`.
+        buttons: masks of the buttons that are held in each frame, the last one from then on; bits are in the order of
+            `scene_player.BUTTONS`.
         late_ns: extra duration of reset.
+        again: number of frames to record after a second reset, in the middle of a frame; they follow the others.
+
+    Returns:
+        The frames, each uint8 (visible lines, visible pixels, 3).
 
     Raises:
-        UserError: the simulator is missing.
+        UserError: the simulator, or the board's wiring, is missing.
         SimulationError: the simulation could not be built or run.
-        VideoError: the output departs from the standard, or the board samples symbols while they may change.
+        VideoError: the output departs from the standard, or is sampled while it may change.
     """
-    frame = screen.horizontal.total * screen.vertical.total * SYMBOL_BITS
+    screen, wiring = design.screen_geometry, wiring_of(board.name)
+    per_pixel = SYMBOL_BITS if "link" in wiring.outputs else 1
+    frame = screen.horizontal.total * screen.vertical.total * per_pixel
+    masks = [*buttons, *[buttons[-1]] * (MASKS - len(buttons))]
+    pressed = "".join(f"{mask:0{len(BUTTONS)}b}" for mask in reversed(masks))
     # Reset restarts the video before the first vertical sync, from which frames are counted.
-    bits = frames * frame + frame // 8
-    arguments = [f"+bits={bits}", f"+buttons={buttons:b}", f"+late_ns={late_ns}"]
-    found = pictures(symbols(_record(board, sources, directory, simulator, arguments)), screen)
-    if len(found) < frames:
-        raise VideoError(f"{len(found)} frames in {bits} bits, expected {frames}")
-    return found[:frames]
+    values = [count * frame + frame // 8 for count in (frames, again)]
+    if again:
+        values[0] += frame // 2
+    arguments = [f"+values={values[0]}", f"+again={values[1] if again else 0}", f"+pressed={pressed}"]
+    arguments += [f"+each={frame}", f"+late_ns={late_ns}"]
+    rates, recorded = _record(board, sources, design, directory, simulator, arguments)
+    seen = []
+    for count, rate, lines in zip((frames, again), rates, recorded, strict=False):
+        if abs(rate / per_pixel / screen.monitor_hz * 1e6 - 1) > ALLOWED:
+            raise VideoError(f"pixel clock: {rate / per_pixel:.3f} MHz, expected {screen.monitor_hz / 1e6:g} MHz")
+        found = pictures(symbols(wires(lines)), screen) if per_pixel > 1 else parallel_pictures(lines, screen)
+        if len(found) < count:
+            raise VideoError(f"{len(found)} frames after reset, expected {count}")
+        seen += found[:count]
+    return seen
 
 
 def golden(design: Design, position: tuple[int, int, int] | None = None) -> np.ndarray:
@@ -85,58 +170,73 @@ def golden(design: Design, position: tuple[int, int, int] | None = None) -> np.n
 
 
 def _record(
-    board: OpenBoard, sources: Sequence[Path], directory: Path, simulator: str, arguments: Sequence[str]
-) -> np.ndarray:
-    """Record the output of the board's DVI connector: bool (4, bits), blue, green, red and clock."""
+    board: Board,
+    sources: Sequence[Path],
+    design: Configuration,
+    directory: Path,
+    simulator: str,
+    arguments: Sequence[str],
+) -> tuple[list[float], list[list[str]]]:
+    """Return the number of values per microsecond, and the values in hexadecimal, of each recording.
+
+    During the second reset a DAC or a transmitter gets no picture.
+    """
     directory.mkdir(parents=True, exist_ok=True)
-    device = directory / "dvi_device.v"
-    device.write_text(_device(board))
     program = build_program(
-        f"{board.name}-dvi", "dvi_bench", [*sources, HERE / "models.v", device, HERE / "bench.v"], simulator=simulator,
-        flags=("-O3", "--output-split", "20000"), compiler=("-O1",),
+        f"{board.name}-board", "board_bench",
+        [*sources, HERE / "models.v", _device(board, sources[-1], design, directory), HERE / "bench.v"],
+        simulator=simulator, flags=("-O3", "--output-split", "20000"), compiler=("-O1",),
     )  # fmt: skip
     done = subprocess.run([*program, *arguments], cwd=directory, capture_output=True, text=True, check=False)
-    if done.returncode:
-        (directory / "dvi.log").write_text(done.stdout + done.stderr)
-        raise SimulationError(f"the board's simulation failed; its log is {directory / 'dvi.log'}")
-    unsteady = re.search(r"^unsteady (\d+)$", done.stdout, re.MULTILINE)
-    if unsteady is None or int(unsteady[1]):
-        raise VideoError(f"{unsteady[1] if unsteady else 'all'} symbols change while they are sampled")
-    digits = (directory / "gpdi.txt").read_text()
-    if unknown := re.search("[^0-9a-f]", digits):
-        raise VideoError(f"bit {unknown.start()}: a wire is neither 0 nor 1")
-    values = np.array([int(digit, 16) for digit in digits], np.uint8)
+    said = [line.split() for line in done.stdout.splitlines()]
+    values = {name: [line[1] for line in said if line[0] == name] for name in ("unsteady", "rate", "held")}
+    if done.returncode or len(values["unsteady"]) != 1:
+        (directory / "board.log").write_text(done.stdout + done.stderr)
+        raise SimulationError(f"the board's simulation failed; its log is {directory / 'board.log'}")
+    if values["unsteady"] != ["0"]:
+        raise VideoError(f"{values['unsteady'][0]} values change while they are sampled")
+    recorded = [(directory / f"{at}.txt").read_text().split() for at in range(len(values["rate"]))]
+    for lines in recorded:
+        unknown = [at for at, line in enumerate(lines) if not re.fullmatch("[0-9a-f]+", line)]
+        if unknown:
+            raise VideoError(f"value {unknown[0]}: a wire is neither 0 nor 1")
+    for held in values["held"]:
+        screen = design.screen_geometry
+        idle = f"{(not screen.horizontal.active_high) << 3 | (not screen.vertical.active_high) << 2:x}000000"
+        if len(held) == len(idle) and held != idle:
+            raise VideoError(f"in reset the monitor gets {held}, expected {idle}")
+    return [float(rate) for rate in values["rate"]], recorded
+
+
+def _device(board: Board, top: Path, design: Configuration, directory: Path) -> Path:
+    """Write a module with the board in it, for the bench."""
+    wiring = wiring_of(board.name)
+    [pin_file] = [path for path in top.parent.glob(f"{top.stem}.*") if path.suffix[1:] in PIN_FILES]
+    pins, _ = read_pin_file(pin_file)
+    if "link" in wiring.outputs:
+        pair = "{" + ", ".join(f"link[{at}] === ~link_n[{at}] ? link[{at}] : 1'bx" for at in (3, 2, 1, 0)) + "}"
+        inside = _LINK.replace("{value}", pair if "link_n" in wiring.outputs else "link")
+    elif "dac_clock" in wiring.outputs:
+        inside = _PARALLEL.format(sync_n="sync_n" if "sync_n" in wiring.outputs else "1'b0")
+    else:
+        raise UserError(f"board: the {board.title} has a DAC without a clock, which is not simulated")
+    if isinstance(board, QuartusBoard):
+        inside += f"    defparam top.COLOUR_BITS = {design.colour_bits};\n"
+    path = directory / "device.v"
+    path.write_text(device(wiring, top.stem, pins, inside))
+    return path
+
+
+def wires(lines: Sequence[str]) -> np.ndarray:
+    """Return the wires of a link, bool (4, bits): blue, green, red and clock."""
+    values = np.array([int(line, 16) for line in lines], np.uint8)
     return np.stack([values >> channel & 1 for channel in range(len(_CHANNELS))]).astype(bool)
 
 
-def _device(board: OpenBoard) -> str:
-    """Return a module with the board in it and the same ports for any board. Without a reset button, its PLL resets."""
-    lines, connections = [], []
-    for name, signal in board.signals.items():
-        bits = f" [{len(signal.pins) - 1}:0]" if isinstance(signal.pins, tuple) else ""
-        lines.append(f"    {'wire' if name in board.outputs else 'reg'}{bits} {name};")
-        connections.append(f".{name}({name})")
-    lines.append(f"    initial {board.clock} = 1'b0;")
-    lines.append(f"    always #({500 / board.clock_mhz}) {board.clock} = ~{board.clock};")
-    for name, value in board.inputs.items():
-        pressed = "reset" if name == "reset" else f"buttons[{BUTTONS.index(name)}]"
-        lines.append(f"    always @* {value.removeprefix('~')} = {'~' * value.startswith('~')}{pressed};")
-    for port, value in (("link", "link_p"), ("serial", "serial")):
-        [name] = [name for name, driven in board.outputs.items() if driven == value]
-        lines.append(f"    assign {port} = {name};")
-    body = "\n".join(lines)
-    return f"""`timescale 1ns / 1ps
-
-module dvi_device (
-    input  wire reset,
-    input  wire [{len(BUTTONS) - 1}:0] buttons,
-    output wire [3:0] link,
-    output wire serial
-);
-{body}
-    {board.name} top ({", ".join(connections)});
-endmodule
-"""
+def parallel_pictures(lines: Sequence[str], screen: Screen) -> list[np.ndarray]:
+    """Check the syncs and the blanking of every pixel of a parallel output, and return all whole frames."""
+    words = np.array([int(line, 16) for line in lines], ">u4").view(np.uint8).reshape(-1, 4)
+    return _frames(np.unpackbits(words, axis=1)[:, 4:], screen)
 
 
 def symbols(wires: np.ndarray) -> np.ndarray:
@@ -191,10 +291,24 @@ def pictures(words: np.ndarray, screen: Screen) -> list[np.ndarray]:
     samples = np.stack([hs, vs, visible[0], np.zeros_like(hs)])
     colours = np.unpackbits(data[::-1].astype(np.uint8)[..., None], axis=-1)  # red, green, blue
     bits = np.concatenate([samples.T, np.moveaxis(colours, 0, 1).reshape(len(hs), -1)], axis=1)
+    return _frames(bits, screen)
+
+
+def _frames(bits: np.ndarray, screen: Screen) -> list[np.ndarray]:
+    """Return all whole frames of pixels, each HS, VS, BLANK_N, SYNC_N, red, green and blue, the first after reset.
+
+    Raises:
+        VideoError: the first frame comes late, or a departure from the standard.
+    """
     line_starts, frame_starts = (
         np.flatnonzero(np.diff((levels == int(timing.active_high)).astype(int)) > 0) + 1
-        for levels, timing in ((hs, screen.horizontal), (vs, screen.vertical))
+        for levels, timing in ((bits[:, 0], screen.horizontal), (bits[:, 1], screen.vertical))
     )
+    # After reset the front porch comes first.
+    latest = (screen.vertical.front + 1) * screen.horizontal.total
+    if len(frame_starts) == 0 or frame_starts[0] > latest:
+        first = f"{frame_starts[0]} pixels" if len(frame_starts) else "nowhere"
+        raise VideoError(f"VS begins {first} after reset, expected at most {latest}")
     # In the format of the bench of the VGA output, which has the last sample first.
     cut = [bits[start:end] for start, end in pairwise(line_starts)]
     lines = [Line("".join(map(str, line[::-1].reshape(-1))), len(line), 0) for line in cut]
@@ -224,11 +338,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     design = design_of(arguments.scene, given_options(arguments), arguments.fix, console, **board.configuration)
     output = arguments.output / board.name / design.name
     emptied(output)
-    screen = design.configuration.screen_geometry
     try:
         with console.waiting(f"{board.name}, {design.configuration.name}: building and simulating"):
             sources = write_project(board, design, output)
-            frames = watch(board, sources, screen, arguments.frames, output, simulator=arguments.simulator)
+            frames = watch(
+                board, sources, design.configuration, arguments.frames, output, simulator=arguments.simulator
+            )
     except (SimulationError, VideoError) as error:
         print(printable(error), file=sys.stderr)
         return 1

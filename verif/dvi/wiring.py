@@ -170,7 +170,7 @@ WIRING = {
 }  # fmt: skip
 """Wiring by the names of the boards."""
 
-_PIN_FILES = {
+PIN_FILES = {
     "lpf": (r'^LOCATE COMP "(\S+)" SITE "(\w+)";$', r'^IOBUF PORT "(\S+)" IO_TYPE=(.*);$'),
     "pcf": (r"^set_io (?:-\w+ \w+ )*(\S+) (\w+) ", r"^set_io (?:-\w+ \w+ )*(\S+) \w+  # (.*)$"),
     "cst": (r'^IO_LOC "(\S+)" (\w+);$', r'^IO_PORT "(\S+)" (.*);$'),
@@ -194,7 +194,7 @@ def wiring_of(name: str) -> Wiring:
 def read_pin_file(path: Path) -> tuple[dict[str, str], dict[str, str]]:
     """Return the pin of each bit of a top's ports, and the standard and options of each pin."""
     text = path.read_text()
-    located, given = (re.findall(pattern, text, re.M) for pattern in _PIN_FILES[path.suffix[1:]])
+    located, given = (re.findall(pattern, text, re.M) for pattern in PIN_FILES[path.suffix[1:]])
     if path.suffix == ".qsf":
         located, given = ([found[::-1] for found in one] for one in (located, given))
     pins = dict(located)

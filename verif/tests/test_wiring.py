@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -15,10 +16,11 @@ from conftest import run_tool
 from raycaster.configuration import Configuration, configure
 from raycaster.design import ProcessorDesign
 from raycaster.fpga import bitstream, quartus
-from raycaster.fpga.board import TOP, Board, OpenBoard, QuartusBoard, board_names, find_board
+from raycaster.fpga import board as board_module
+from raycaster.fpga.board import HERE, TOP, Board, OpenBoard, QuartusBoard, board_names, find_board
 from raycaster.fpga.flows import clocks_for
 from raycaster.memory_map import clocks_per_bit
-from raycaster.verif.dvi.wiring import OUTPUTS, device, read_pin_file, wiring_of
+from raycaster.verif.dvi.wiring import OUTPUTS, PIN_FILES, device, read_pin_file, wiring_of
 
 MODELS = Path(__file__).parents[1] / "dvi" / "models.v"
 
@@ -171,7 +173,7 @@ def project(monkeypatch, tmp_path) -> Callable[[Case], list[Path]]:
 def simulated(case: Case, files: list[Path]) -> list[dict[str, str]]:
     """Simulate a board; return the values of each printed line, by name, and the line's kind as `kind`."""
     board, wiring, top = find_board(case.board, Board), wiring_of(case.board), files[-1]
-    [pin_file] = [path for path in top.parent.glob(f"{top.stem}.*") if path.suffix in (".lpf", ".pcf", ".cst", ".qsf")]
+    [pin_file] = [path for path in top.parent.glob(f"{top.stem}.*") if path.suffix[1:] in PIN_FILES]
     pins, options = read_pin_file(pin_file)
     assert options == wiring.pins
     quartus_board = isinstance(board, QuartusBoard)
@@ -193,7 +195,8 @@ def simulated(case: Case, files: list[Path]) -> list[dict[str, str]]:
     built = run_tool(
         top.parent, "iverilog", "-g2005", "-s", "bench", "-o", "bench", *map(str, files), str(MODELS), "bench.v"
     )
-    assert built.returncode == 0, built.stdout
+    if built.returncode:
+        raise ValueError(built.stdout)
     lines = [line.split() for line in run_tool(top.parent, "vvp", "-n", "bench").stdout.splitlines()]
     return [
         {"kind": line[0]} | dict(word.split("=") for word in line[1:] if "=" in word)
@@ -263,15 +266,80 @@ def check_link(case: Case, sent: list[dict[str, str]]) -> None:
             assert (before - after) % count == step or (after - before) % count == step
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.board}-{case.engine}{'-game' * case.game}")
-def test_each_pin_has_its_role(case, project):
-    """Pins, standards and options are those of the second source; so are the buttons' levels."""
-    lines = simulated(case, project(case))
+def check(case: Case, files: list[Path]) -> None:
+    """Check pins, standards and options, buttons and their levels, and outputs against the second source."""
+    lines = simulated(case, files)
     steps, pins, sent = ([line for line in lines if line["kind"] == kind] for kind in ("step", "pins", "sent"))
     check_inputs(case, steps)
     check_pins(case, pins)
     if "link" in wiring_of(case.board).outputs:
         check_link(case, sent)
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.board}-{case.engine}{'-game' * case.game}")
+def test_each_pin_has_its_role(case, project):
+    check(case, project(case))
+
+
+ICE, GAME, ULX3S, TANG, DE2, LITE = (
+    Case("icebreaker", "beam"), Case("ulx3s", game=True), Case("ulx3s"), Case("tang_nano_20k"), Case("de2"),
+    Case("de10_lite"),
+)  # fmt: skip
+
+FAULTS = [
+    (ULX3S, "dvi_board.v", "locked & run", "locked"),
+    (ULX3S, "dvi_board.v", "locked & run", "1'b0"),
+    (ULX3S, "dvi_board.v", ".ready(ready),\n    .buttons", ".ready(run),\n    .buttons"),
+    (ULX3S, "dvi_board.v", ".vga_blank_n(vga_blank_n),\n    .blue", ".vga_blank_n(vga_vs),\n    .blue"),
+    (ULX3S, "dvi_board.v", "(pixel_end),\n    .vga_r(vga_r),\n    .vga_g(vga_g)",
+     "(pixel_end),\n    .vga_r(vga_g),\n    .vga_g(vga_r)"),
+    (ULX3S, "dvi_serialiser.v", ".symbol(green), .sent(link[1])", ".symbol(green), .sent(link[2])"),
+    (ULX3S, "ecp5/link_pins.v", "link_p = link", "link_p = {link[3], link[0], link[1], link[2]}"),
+    (ULX3S, "ecp5/ddr_pin.v", ".D0(bits[0]), .D1(bits[1])", ".D0(bits[1]), .D1(bits[0])"),
+    (ULX3S, "scene/board_design.v", ".buttons(buttons)", ".buttons({buttons[4], buttons[5], buttons[3:0]})"),
+    (ULX3S, "scene/board_design.v", "uart_tx = 1'b1", "uart_tx = 1'b0"),
+    (ULX3S, "ulx3s/board.toml", 'reset = "~btn[0]"', 'reset = "btn[0]"'),
+    (ULX3S, "ulx3s/board.toml", 'up = "btn[3]"', 'up = "~btn[3]"'),
+    (ULX3S, "ulx3s/board.toml", '"R18", "V1"', '"V1", "R18"'),
+    (ULX3S, "ulx3s/board.toml", '"A16", "A14", "A12", "A17"', '"A12", "A14", "A16", "A17"'),
+    (ULX3S, "ulx3s/board.toml", "clock_mhz = 25", "clock_mhz = 50"),
+    (ULX3S, "ulx3s/board.toml", '"UP", "DOWN", "DOWN"', '"DOWN", "DOWN", "DOWN"'),
+    (ULX3S, "ulx3s/board.toml", 'wifi_gpio0 = "1\'b1"', 'wifi_gpio0 = "1\'b0"'),
+    (GAME, "game/board_design.v", "buttons[5], buttons[4]", "buttons[4], buttons[5]"),
+    (GAME, "game/board_design.v", "buttons[0] | buttons[1]", "buttons[0]"),
+    (TANG, "gowin/link_pins.v", ".I(link[2]), .O(link_p[2])", ".I(~link[2]), .O(link_p[2])"),
+    (TANG, "tang_nano_20k/board.toml", '"36", "38", "40", "34"', '"38", "36", "40", "34"'),
+    (TANG, "tang_nano_20k/board.toml", 'forward = "btn[0]"', 'forward = "~btn[0]"'),
+    (ICE, "parallel_board.v", "locked & run", "locked"),
+    (ICE, "parallel_board.v", "locked & run", "run"),
+    (ICE, "parallel_board.v", ".vga_hs(vga_hs),\n    .vga_vs(vga_vs)", ".vga_hs(vga_vs),\n    .vga_vs(vga_hs)"),
+    (ICE, "ice40/clock_pin.v", ".D_OUT_0(1'b0), .D_OUT_1(1'b1)", ".D_OUT_0(1'b1), .D_OUT_1(1'b0)"),
+    (ICE, "icebreaker/board.toml", '"48", "2", "3", "4"', '"4", "3", "2", "48"'),
+    (ICE, "icebreaker/board.toml", 'LEDG_N = "~locked"', 'LEDG_N = "locked"'),
+    (DE2, "de2/board.toml", '"C8", "F10"', '"F10", "C8"'),
+    (DE2, "de2/board.toml", 'VGA_BLANK = "vga_blank_n"', 'VGA_BLANK = "vga_sync_n"'),
+    (DE2, "de2/board.toml", 'forward = "~KEY[2]"', 'forward = "~KEY[1]"'),
+    (DE2, "channel_pins.v", "i % BITS", "0"),
+    (LITE, "de10_lite/board.toml", 'pins = "N3"', 'pins = "N4"'),
+    (LITE, "de10_lite/board.toml", 'reset = "SW[2]"', 'reset = "~SW[2]"'),
+]  # fmt: skip
+"""Faults that the checks must notice: a design with the fault, the file below `fpga/`, the right and the wrong text."""
+
+
+@pytest.mark.slow_sets(quick=["ulx3s-exact-dvi_board.v-0", "icebreaker-beam-parallel_board.v-22", "de2-exact-de2"])
+@pytest.mark.parametrize(
+    ("case", "file", "right", "wrong"),
+    [pytest.param(*fault, id=f"{fault[0].board}-{fault[0].engine}-{fault[1]}-{at}") for at, fault in enumerate(FAULTS)],
+)
+def test_a_fault_is_noticed(case, file, right, wrong, project, monkeypatch, tmp_path):
+    copy = shutil.copytree(HERE, tmp_path / "fpga", ignore=shutil.ignore_patterns("*.py", "__pycache__"))
+    assert right in (copy / file).read_text()
+    (copy / file).write_text((copy / file).read_text().replace(right, wrong))
+    for module in (board_module, bitstream):
+        monkeypatch.setattr(module, "HERE", copy)
+    monkeypatch.setattr(quartus, "HELPER", copy / quartus.HELPER.name)
+    with pytest.raises(AssertionError):
+        check(case, project(case))
 
 
 # PLLs -----------------------------------------------------------------------------------------------------------------
@@ -319,7 +387,8 @@ def clocks_made(case: Case, files: list[Path]) -> tuple[float, float] | None:
     used = [path for path in files if path.name in ("board_clocks.v", "board_pll.v")]
     words = ("iverilog", "-g2005", "-s", "bench", "-o", "clocks", *map(str, used), str(MODELS), str(bench))
     built = run_tool(bench.parent, *words)
-    assert built.returncode == 0, built.stdout
+    if built.returncode:
+        raise ValueError(built.stdout)
     said = [line.split() for line in run_tool(bench.parent, "vvp", "-n", "clocks").stdout.splitlines()]
     assert ["early", "0"] in said
     [made] = [line for line in said if line[0] == "made"]
