@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
 
@@ -14,6 +14,20 @@ from raycaster.rtl.common.interfaces import Steps
 
 EARLY_OUT_AT = 2
 """Cycles from the start of a rectangle that no ray runs towards to its early out, the last cycle of its test."""
+
+
+def check_cycles(cycles: Mapping[str, int], config: Configuration) -> None:
+    """Check the longest times of a row and of a group, as the register reports them after a whole frame in time.
+
+    Raises:
+        AssertionError: they contradict each other, the budget, or the visible length of a line.
+    """
+    if config.facts.line_buffered:
+        # A row is its groups, one after another; less than one cycle per group comes on top.
+        assert cycles["row"] // config.groups <= cycles["group"] <= config.group_cycles, cycles
+        assert config.groups <= cycles["row"] < config.screen_geometry.row_cycles, cycles
+    else:
+        assert cycles == {"row": config.screen_geometry.beats.visible, "group": 1}, cycles
 
 
 def sorted_rect(rectangles: Rectangles, index: int, prefix: str, config: Configuration | None = None) -> dict[str, int]:

@@ -10,6 +10,7 @@ from cocotb.handle import HierarchyObject
 
 from raycaster.scene import Scene
 from raycaster.sim.harness import Harness
+from raycaster.verif.expected import check_cycles
 
 _CAMERA = {"position": [20, 256, 100]}
 _COLOURS = ("#ff0000", "#00ff00", "#0000ff", "#ffff00", "#00ffff", "#ff00ff")
@@ -37,35 +38,30 @@ async def underrun(bench: HierarchyObject) -> None:
     harness = Harness(bench)
     bus, monitor, configuration = harness.bus, harness.monitor, harness.configuration
     assert configuration.allow_underrun == configuration.facts.line_buffered, "the beam engine must never underrun"
-    reflections, row_cycles = configuration.reflections, harness.screen.row_cycles
+    reflections = configuration.reflections
     heavy = _heavy(configuration.rectangles, configuration.light)
     light_picture, heavy_picture = harness.golden(_LIGHT, reflections), harness.golden(heavy, reflections)
 
     async def underruns() -> int:
         return (await bus.read("status"))["underrun"]
 
-    async def worst_row() -> int:
-        return (await bus.read("cycles"))["row"]
+    async def expect_in_time(picture: np.ndarray, what: str) -> None:
+        harness.expect_picture(await monitor.frame(), picture, what)
+        assert await underruns() == 0
+        check_cycles(await bus.read("cycles"), configuration)
 
     await harness.reset()
     await harness.load(_LIGHT, reflections)
-    harness.expect_picture(await monitor.frame(), light_picture, "the light scene")
-    assert await underruns() == 0
-    assert await worst_row() <= row_cycles
+    await expect_in_time(light_picture, "the light scene")
 
     await harness.load(heavy, reflections)
-    seen = await monitor.frame()
     if not configuration.allow_underrun:
-        harness.expect_picture(seen, heavy_picture, "the heavy scene")
-        assert await underruns() == 0
-        assert await worst_row() <= row_cycles
+        await expect_in_time(heavy_picture, "the heavy scene")
     else:
         assert configuration.group_cycles > configuration.group_budget, "this design cannot underrun"
-        _expect_abandoned_rows(harness, seen, heavy_picture, light_picture)
+        _expect_abandoned_rows(harness, await monitor.frame(), heavy_picture, light_picture)
         assert await underruns() == 1
-        assert await worst_row() == row_cycles, "a row ends when its time is over"
-        await bus.write("cycles")
-        assert await worst_row() < row_cycles
+        assert (await bus.read("cycles"))["row"] == harness.screen.row_cycles, "a row ends when its time is over"
         await harness.load(_LIGHT, reflections)
         harness.expect_picture(await monitor.frame(), light_picture, "the light scene after the heavy one")
         await bus.write("status", underrun=0)
@@ -73,8 +69,8 @@ async def underrun(bench: HierarchyObject) -> None:
     await bus.write("status", underrun=1)
     assert await underruns() == 0, "writing 1 clears underrun"
     if configuration.allow_underrun:
-        harness.expect_picture(await monitor.frame(), light_picture, "the light scene, one frame later")
-        assert await underruns() == 0
+        await bus.write("cycles")
+        await expect_in_time(light_picture, "the light scene, one frame later")
     monitor.check_pins()
 
 

@@ -6,10 +6,12 @@ Verilator runs the full scene memory; Icarus, some hundred times slower, gets a 
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +25,7 @@ from raycaster.engines import ENGINES, EXACT
 from raycaster.scene import load_scene
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import SIMULATORS, SimulationError, build_model, convert, run_bench
+from raycaster.verif.expected import check_cycles
 from raycaster.verif.seeds import seed
 
 EVERYTHING = dict.fromkeys(EXACT.looks, True)
@@ -84,6 +87,20 @@ def test_underrun(bench: Bench, simulator: str, options: dict[str, Any]):
     bench("verif.benches.underrun_bench", configuration, simulator)
 
 
+@pytest.mark.parametrize(
+    ("engine", "row", "group", "right"),
+    [
+        ("seed", 2320, 232, True), ("seed", 1263, 205, True), ("seed", 1263, 0, False), ("seed", 0, 0, False),
+        ("seed", 2321, 233, False), ("seed", 2320, 205, False), ("seed", 3200, 232, False),
+        ("beam", 640, 1, True), ("beam", 641, 1, False), ("beam", 639, 1, False), ("beam", 640, 0, False),
+    ],
+)  # fmt: skip
+def test_cycles_that_cannot_be(engine, row, group, right):
+    """The default design has 10 groups of at most 232 cycles, and 3,200 cycles per row; a line shows 640 pixels."""
+    with contextlib.nullcontext() if right else pytest.raises(AssertionError):
+        check_cycles({"row": row, "group": group}, configure(engine=engine))
+
+
 def test_the_main_program_matches_cocotb(tmp_path: Path):
     """Our main program and cocotb's main program give the same events and times in a frame without a wrong pixel."""
     configuration = TINY["exact"]
@@ -99,13 +116,16 @@ def test_the_main_program_matches_cocotb(tmp_path: Path):
     assert len(ours) == len(theirs) > 10 * configuration.screen_geometry.vertical.total
 
 
-@pytest.mark.slow_sets("apb", "axi4lite-verilator", "wishbone-icarus", "wishbone-verilator")
-@pytest.mark.parametrize("simulator", SIMULATORS)
+@pytest.mark.slow_sets(quick=["axi4lite-icarus-seed", "wishbone-icarus-exact"])
+@pytest.mark.parametrize(
+    ("simulator", "engine"), [one for one in product(SIMULATORS, TINY) if one != ("icarus", "beam")]
+)
 @pytest.mark.parametrize("bus", BRIDGED)
-def test_bus(bench: Bench, bus, simulator):
+def test_bus(bench: Bench, bus, simulator, engine):
     """Random words with back-pressure, a frame, and cycles per access; in Icarus, registers start unknown."""
     first = seed()
-    bench(BUS_BENCH, SMALL[bus], simulator, SMALL_SCENE, seeds=(first, first + 1, first + 2))
+    design = replace(TINY[engine], bus=bus)
+    bench(BUS_BENCH, design, simulator, SMALL_SCENE, seeds=(first, first + 1, first + 2))
 
 
 @pytest.mark.slow_sets(quick=["axi4lite-s_axi"])
