@@ -12,7 +12,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from raycaster.errors import UserError
-from raycaster.rtl.system.scene_player import BUTTONS
+
+BUTTONS = ("forward", "back", "left", "right", "up", "down")
+"""Buttons from bit 0 on, as the simulations press them."""
 
 OUTPUTS = {"link": 4, "link_n": 4, "serial": 1, "red": 10, "green": 10, "blue": 10} | dict.fromkeys(
     ("hs", "vs", "blank_n", "sync_n", "dac_clock"), 1

@@ -16,8 +16,7 @@ from raycaster.configuration import configure
 from raycaster.convert.take_home import waivers
 from raycaster.fpga import quartus
 from raycaster.fpga.board import TOP, QuartusBoard, board_names, find_board
-from raycaster.fpga.quartus import top_of, write_project
-from raycaster.rtl.system.scene_player import BUTTONS
+from raycaster.fpga.quartus import write_project
 from raycaster.scene import load_scene
 from raycaster.tools import run_yosys
 
@@ -111,57 +110,6 @@ def test_tools_have_nothing_to_say(name, more, tmp_path):
     assert (done.returncode, re.findall("^%.*", done.stdout, re.M)) == (0, [])
 
 
-SYSTEM = """
-module scene_system (
-    input clk, input ready, input [5:0] buttons,
-    output [{bits}-1:0] vga_r, output [{bits}-1:0] vga_g, output [{bits}-1:0] vga_b,
-    output vga_hs, output vga_vs, output vga_blank_n, output vga_sync_n, output vga_clk
-);
-assign vga_r = ~0;
-assign vga_g = 1 << {bits} - 1;
-assign vga_b = 0;
-endmodule
-"""
-"""System that has only ports and one colour."""
-
-COLOURS = {
-    ("de2", 8): (0x3FF, 0x202, 0), ("de2", 3): (0x3FF, 0x249, 0), ("de2_115", 8): (0xFF, 0x80, 0),
-    ("de1_soc", 1): (0xFF, 0xFF, 0), ("de10_lite", 4): (0xF, 8, 0), ("de10_lite", 8): (0xF, 8, 0),
-}  # fmt: skip
-"""Values at the pins of red, green and blue, by board and bits per colour."""
-
-DRIVES = {"VGA_BLANK": "vga_blank_n", "VGA_SYNC": "vga_sync_n"}
-"""Output of the system, by the top's output, if the names differ."""
-
-
-def test_the_tops_connect_what_they_say(tmp_path):
-    """Each button, and reset, is the key or switch in the board's description; outputs and clock are connected."""
-    text, script = quartus.HELPER.read_text(), ["read_verilog tops.v"]
-    for name, bits in COLOURS:
-        one = f"{name}_{bits}"
-        top = top_of(find_board(name, QuartusBoard)) + SYSTEM.format(bits=bits)
-        text += top.replace(TOP, one).replace("scene_system", f"system_{one}")
-        script.append(f"chparam -set COLOUR_BITS {bits} {one}")
-    (tmp_path / "tops.v").write_text(text)
-    run_yosys(tmp_path, "flatten", [*script, "hierarchy -check", "flatten", "simplemap", "write_json tops.json"])
-    modules = json.loads((tmp_path / "tops.json").read_text())["modules"]
-    for (name, bits), colours in COLOURS.items():
-        board, module = find_board(name, QuartusBoard), modules[f"{name}_{bits}"]
-        ports, nets = ({net: found["bits"] for net, found in module[kind].items()} for kind in ("ports", "netnames"))
-        levels = {bit: f"{port}[{at}]" for port in ("KEY", "SW") for at, bit in enumerate(ports[port])}
-        for cell in module["cells"].values():
-            if cell["type"] == "$_NOT_":
-                [source], [inverted] = cell["connections"]["A"], cell["connections"]["Y"]
-                levels[inverted] = f"~{levels[source]}"
-        given = [levels[bit] for bit in (*nets["system.ready"], *nets["system.buttons"])]
-        assert given == [f"~{board.inputs['reset']}", *(board.inputs[button] for button in BUTTONS)]
-        assert ports.pop(board.clock) == nets["system.clk"]
-        shown = [int("".join(reversed(ports.pop(f"VGA_{channel}"))), 2) for channel in "RGB"]
-        assert tuple(shown) == colours
-        for port in ports.keys() - {"KEY", "SW"}:
-            assert ports[port] == nets[f"system.{DRIVES.get(port, port.lower())}"], port
-
-
 @pytest.mark.parametrize(
     ("script", "complaint", "logged"),
     [
@@ -199,3 +147,10 @@ def test_quartus_runs(without_hardware, stand_in, tmp_path, capsys):
         assert f"-name COLOUR_BITS {bits}\n" in (directory / f"{TOP}.qsf").read_text()
         assert not (directory / "older").exists()
         (directory / "older").touch()
+
+
+def test_a_pixel_clock_off_the_standard_is_said(without_hardware, stand_in, tmp_path, capsys):
+    stand_in("quartus_sh", "exit 0")
+    quartus.main([str(SMALL_SCENE), "--board=de2", "--output", str(tmp_path)])
+    said = "pixel clock: 25 MHz; the standard's is 25.175 MHz, and a monitor may refuse the other"
+    assert said in capsys.readouterr().out.splitlines()

@@ -19,7 +19,7 @@ from raycaster.fpga import bitstream, quartus
 from raycaster.fpga import board as board_module
 from raycaster.fpga.board import HERE, TOP, Board, OpenBoard, QuartusBoard, board_names, find_board
 from raycaster.fpga.flows import clocks_for
-from raycaster.memory_map import clocks_per_bit
+from raycaster.memory_map import BUTTON_NAMES, clocks_per_bit
 from raycaster.verif.dvi.wiring import OUTPUTS, PIN_FILES, device, read_pin_file, wiring_of
 
 MODELS = Path(__file__).parents[1] / "dvi" / "models.v"
@@ -116,12 +116,13 @@ class Case(NamedTuple):
     engine: str = "exact"
     game: bool = False
     rows: int | None = None
+    bits: int | None = None
 
     @property
     def config(self) -> Configuration:
         """Configuration with these rows on a monitor, or with the smallest screen."""
         screen = {"screen": "vga" if self.rows else "tiny", "rectangles": 3, "allow_underrun": True}
-        own = find_board(self.board, Board).configuration
+        own = find_board(self.board, Board).configuration | ({"colour_bits": self.bits} if self.bits else {})
         return configure(**own | screen | {"engine": self.engine, "rows": self.rows})
 
 
@@ -131,6 +132,7 @@ CASES = [
     Case("icebreaker", "beam"),
     Case("ulx3s", game=True),
     Case("icebreaker", "beam", game=True),
+    *(Case(name, bits=bits) for name, bits in (("de2", 3), ("de1_soc", 1), ("de10_lite", 8))),
 ]
 
 
@@ -209,6 +211,8 @@ def check_inputs(case: Case, steps: list[dict[str, str]]) -> None:
     """Check what the system and the lights see of each pressed button, of reset, and of the PLL's lock."""
     board, wiring = find_board(case.board, Board), wiring_of(case.board)
     roles = {"forward": 0, "back": 1, "left": 2, "right": 3, "up": 4, "down": 5}
+    # As the firmware reads them.
+    assert BUTTON_NAMES == ("left", "right", "up", "down", "fire")
     for number, seen in zip(range(-1, 10), steps, strict=True):
         held = {role for role, bit in roles.items() if number >= ALL or number == bit + 1} & wiring.pressed.keys()
         held |= {"reset"} & wiring.pressed.keys() if number == RESET else set()
@@ -276,7 +280,7 @@ def check(case: Case, files: list[Path]) -> None:
         check_link(case, sent)
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.board}-{case.engine}{'-game' * case.game}")
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.board}-{case.engine}{'-game' * case.game}-{case.bits}")
 def test_each_pin_has_its_role(case, project):
     check(case, project(case))
 
