@@ -112,7 +112,6 @@ def _process(statements: str, declared: str = "") -> str:
 
 WIDE = "wide = unsigned(5)\n@always_comb\ndef add_up():\n    wide.next = a + b\n"
 APART = "apart = signed(5)\n@always_comb\ndef subtract():\n    apart.next = a - b\n"
-OTHER = "other = unsigned(2)\n@always_comb\ndef invert():\n    other.next = ~index\n"
 BOTH = "both = unsigned(8)\n@always_comb\ndef join():\n    both.next = concat(a, b)\n"
 PAIR = "pair = Record({'high': 2, 'low': 2})\n"
 
@@ -122,21 +121,16 @@ REFUSALS = (
     Refusal("condition", _process("if a + b:  # refused\n    result.next = 1\nelse:\n    result.next = 0"),
             _process("if wide:\n    result.next = 1\nelse:\n    result.next = 0", WIDE)),
     Refusal("shifted", _process("result.next = (a + b) >> 1  # refused"), _process("result.next = wide >> 1", WIDE)),
-    Refusal("sign", _process("result.next = a - b < 0  # refused"), _process("result.next = apart < 0", APART)),
-    Refusal("remainder", _process("result.next = (a - b) % 8  # refused"),
-            _process("result.next = apart[3:]", APART)),
+    Refusal("sign", _process("result.next = a - b - index < b  # refused"),
+            _process("result.next = below < b", "below = signed(6)\n@always_comb\ndef subtract():\n"
+                     "    below.next = a - b - index\n")),
     Refusal("index", _process("result.next = b[index - a]  # refused"), _process("result.next = b[index]")),
-    Refusal("inverted", _process("result.next = ~index == a  # refused"),
-            _process("result.next = other == a", OTHER)),
     Refusal("bits", _process("result.next = concat(a, b)[6:2]  # refused"),
             _process("result.next = both[6:2]", BOTH)),
     Refusal("function", _process("result.next = max(a, b)  # refused"),
             _process("if a > b:\n    result.next = a\nelse:\n    result.next = b")),
     Refusal("return", _process("result.next = b\nif a == 0:\n    return  # refused\nresult.next = a"),
             _process("result.next = b\nif a != 0:\n    result.next = a")),
-    Refusal("choice", _process("result.next = (a if index[0] else b) == 3  # refused"),
-            _process("result.next = chosen == 3", "chosen = unsigned(4)\n"
-            "@always_comb\ndef choose():\n    chosen.next = a if index[0] else b\n")),
     Refusal("rounded", _process("result.next = apart // 2  # refused", APART),
             _process("result.next = apart[5:1]", APART)),
     Refusal("undriven", _process("result.next = a ^ nothing", "nothing = unsigned(4)  # refused\n"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
@@ -16,8 +16,16 @@ from pygments.token import Keyword, Operator
 
 from raycaster.hdl import internals
 from raycaster.hdl.errors import UserError
-from raycaster.hdl.internals import Block, Constant, Process, ShadowSignal, SignalType, SliceSignal, bits_of
-from raycaster.hdl.lint import check_process
+from raycaster.hdl.internals import (
+    Block,
+    Constant,
+    EnumItemType,
+    Process,
+    ShadowSignal,
+    SignalType,
+    SliceSignal,
+    bits_of,
+)
 from raycaster.hdl.records import Field, block_arguments, signals_in
 from raycaster.hdl.signals import Tied, Unconnected
 
@@ -83,13 +91,22 @@ class Contents:
         signals: signals to declare, in order, except ports.
         fields: fields of records that are read, which are wires.
         memories: lists of signals that processes index, by name.
+        passed: lists that are ports, a port for each signal, by name; True if the block drives them.
+        variables: variables that a process keeps from one run to the next, by name, with their initial values.
+        states: name in Verilog of each state of an enumeration, by its name and code.
+        labels: names of processes that have variables of their own, by identity.
         driven: `reg` or `wire` for each signal and memory that is driven, by identity.
-        starting: signals and memories that begin with their initial values, by identity: registers without a reset.
+        starting: signals and memories that begin with their initial values, by identity: registers.
         read: signals that are read, and what they are cut or joined from.
     """
 
-    def __init__(self, block: Block, parts: list[Any]):
+    def __init__(self, block: Block, parts: list[Any], driven: Collection[int]):
         """Analyse a block.
+
+        Args:
+            block: the block.
+            parts: as the attribute, with processes as MyHDL has made them.
+            driven: identities of all signals and lists that something in the design drives, or that come from outside.
 
         Raises:
             UserError: a signal has no driver, two drivers or no reader; it has no variable or no width; its name is a
@@ -104,8 +121,13 @@ class Contents:
                 self._refuse(f"two things would be called {name} in Verilog; rename one", name)
         self._port_ids = {id(signal) for signal in self.arriving.values()}
         self._touched: dict[int, SignalType] = {}
+        self._driven_somewhere = driven
+        self._writers: dict[int, list[tuple[Any, str]]] = {}
         self._places: dict[int, str] = {}
         self._owners: dict[str, int] = {}
+        self.passed: dict[str, bool] = {}
+        self.variables: dict[str, tuple[Any, int]] = {}
+        self.states: dict[tuple[str, str], str] = {}
         self.driven: dict[int, str] = {}
         self.starting: set[int] = set()
         self.read: set[int] = set()
@@ -121,9 +143,9 @@ class Contents:
         for part, tree in zip(parts, self.parts, strict=True):
             if isinstance(part, Process):
                 tree.function = part.funcobj
-                check_process(tree)
         for part in sorted(self.parts, key=lambda part: not isinstance(part, Instance)):
             self._connect(part)
+        self._find_lists()
         self._find_ports()
         self._name_signals()
         self._check()
@@ -165,14 +187,42 @@ class Contents:
                 self._drive(part.sigdict[name], kind, name)
             for name in part.outmems:
                 self.driven[id(part.symdict[name])] = kind
-            if internals.keeps(part) and getattr(part, "reset", None) is None:
+                self._writers.setdefault(id(part.symdict[name]), []).append((part, name))
+            if internals.keeps(part):
                 self.starting |= {id(part.symdict[name]) for name in (*part.outputs, *part.outmems)}
             edges = [getattr(edge, "sig", edge) for edge in getattr(part, "senslist", ())]
             for signal in [*(part.sigdict[name] for name in sorted(part.inputs)), *edges, getattr(part, "reset", None)]:
                 if isinstance(signal, SignalType):
                     self._read(signal)
 
+    def _find_lists(self) -> None:
+        """Make ports of lists that come from around the block; refuse a list that has two drivers."""
+        for name, memory in self.memories.items():
+            around = self.block.func.__code__.co_freevars + self.block.func.__code__.co_names
+            inside = [one for one in memory if id(one) not in self._port_ids]
+            moving = any(id(one) in self._driven_somewhere for one in [memory, *memory])
+            if moving and name in around and len(inside) == len(memory):
+                self._refuse(f"{name} is a list of the code around the block; pass it as an argument", name)
+            writers = self._writers.get(id(memory), [])
+            words = [word for part, own in writers for word in {*internals.written_words(part, own)}]
+            kinds = {(internals.assigned(part), internals.keeps(part)) for part, _ in writers}
+            resets = any(getattr(part, "reset", None) is not None for part, _ in writers)
+            apart = len(kinds) == 1 and None not in words and len({*words}) == len(words) and not resets
+            alone = len(writers) < 2 or apart
+            if not alone or (writers and any(id(one) in self.driven for one in memory)):
+                self._refuse(f"{name} has two drivers; drive all of it in one process, or write signals instead", name)
+            if moving and not inside:
+                self.passed[name] = bool(writers) or any(self.driven.get(id(one)) == "reg" for one in memory)
+                for one in memory:
+                    if writers:
+                        self.driven[id(one)] = "wire"
+                        self._touched[id(one)] = one
+                    elif id(one) not in self.driven:
+                        self._read(one)
+
     def _drive(self, signal: SignalType, kind: str, name: str) -> None:
+        if isinstance(signal, internals.TRISTATE):
+            self._refuse("tristate signals are not supported; use an input, an output and an enable", name)
         name = next((own for own, one in self.block.sigdict.items() if one is signal), name)
         if isinstance(signal, (ShadowSignal, Tied)) and id(signal) not in self._port_ids:
             self._refuse(f"{name} is a slice or a constant, and has a driver; connect a new signal", name)
@@ -205,7 +255,9 @@ class Contents:
                 self._take(name, -len(self.ports))  # one signal may be at two ports
                 self.names[id(signal)] = name
             elif needed:
-                self._refuse(f"{name}: Port is not used; remove it", name)
+                self.ports += (Port.of(name, signal, False),)
+                self._take(name, -len(self.ports))
+                self.names[id(signal)] = name
 
     def _name_signals(self) -> None:
         """Find the name of each signal: its variable, its place in a list or an interface, or a field of its record."""
@@ -224,7 +276,10 @@ class Contents:
             self._take(name, id(memory))
             internals.set_name(memory, name)
             for index, element in enumerate(memory):
-                if self.names.setdefault(id(element), f"{name}[{index}]") != f"{name}[{index}]":
+                if (
+                    name not in self.passed
+                    and self.names.setdefault(id(element), f"{name}[{index}]") != f"{name}[{index}]"
+                ):
                     self._refuse(
                         f"a process indexes {name}, but {name}[{index}] is also {self.names[id(element)]}", name
                     )
@@ -249,6 +304,9 @@ class Contents:
             self._take(self.names[id(field)], id(field))
         for signal in [*touched, *(one for memory in self.memories.values() for one in memory)]:
             internals.set_name(signal, self.text(signal))
+        for name in self.passed:
+            for index, one in enumerate(self.memories[name]):
+                internals.set_name(one, f"{name}[{index}]")
         for part in self.parts:
             if isinstance(part, Instance):
                 self._take(part.name, id(part))
@@ -256,6 +314,29 @@ class Contents:
                 texts = dict.fromkeys(map(self.text, part.sigdict.values()), 0)
                 for name in part.vardict:
                     self._take(name, 1, texts)
+                for name, value in internals.state_of(part).items():
+                    self._take(name, id(part))
+                    self.variables[name] = part.vardict[name], value
+        signals = [
+            *self.signals,
+            *self.arriving.values(),
+            *(one for memory in self.memories.values() for one in memory),
+        ]
+        variables = [one for part in self.parts for one in getattr(part, "vardict", {}).values()]
+        values = [*(signal.val for signal in signals), *variables]
+        self.enumerations = [value for value in values if isinstance(value, EnumItemType)]
+        for state in (state for value in self.enumerations for state in internals.states_of(value).items()):
+            self.states[state] = self.states.get(state) or self.free(state[0])
+        self.labels = {id(part): self.free(part.name) for part in self.parts if internals.locals_of(part)}
+
+    def free(self, name: str) -> str:
+        """Take a name that nothing else has: this one, if possible."""
+        first, number = name, 0
+        while name in self._owners or _is_keyword(name):
+            number += 1
+            name = f"{first}_{number}"
+        self._owners[name] = 0
+        return name
 
     def _take(self, name: str, owner: int, owners: dict[str, int] | None = None) -> None:
         """Refuse a keyword, and a name that something else has; `owners` are those of a process."""
@@ -303,9 +384,15 @@ def check_keyword(block: Block, name: str, vhdl: bool = False) -> None:
     Raises:
         UserError: the name is a keyword.
     """
-    kind, _ = next(SystemVerilogLexer().get_tokens(name))
-    if name.lower() in internals.vhdl_keywords if vhdl else kind in Keyword or kind in Operator:
+    if name.lower() in internals.vhdl_keywords if vhdl else _is_keyword(name):
         raise refusal(block, f"{name} is a keyword of {'VHDL' if vhdl else 'Verilog'}; rename it", name)
+    if not name.isascii():
+        raise refusal(block, f"{name} has letters that Verilog does not know; rename it", name)
+
+
+def _is_keyword(name: str) -> bool:
+    kind, _ = next(SystemVerilogLexer().get_tokens(name))
+    return kind in Keyword or kind in Operator
 
 
 def refusal(block: Block, reason: str, name: str = "") -> UserError:

@@ -19,8 +19,8 @@ from raycaster.hdl.contents import Connection, Contents, Instance, Loading, Modu
 from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.errors import UserError, faults_in_one_line
 from raycaster.hdl.given import GivenVerilog, load_words
-from raycaster.hdl.internals import Block, SignalType, bits_of
-from raycaster.hdl.records import Field, block_arguments, block_ports, signals_in
+from raycaster.hdl.internals import Block, SignalType, bits_of, drivers_of
+from raycaster.hdl.records import Field, block_arguments, block_ports, is_interface, signals_in
 from raycaster.hdl.signals import Tied, Unconnected
 from raycaster.hdl.verilog_style import module_text, number
 
@@ -59,6 +59,7 @@ def convert_hierarchy(
         raise UserError("python -OO leaves out the docstrings, which become the Verilog's comments; run it without -OO")
     with elaboration(), faults_in_one_line():
         converter = _Converter(directory, header, prefix, vocabulary or {})
+        converter.driven = {*map(id, _drivers(top)), *map(id, block_ports(top).values())}
         module = converter.module_of(top)
         for name in (top.func.__name__, *(port.name for port in module.ports)) if vhdl else ():
             check_keyword(top, name, vhdl=True)
@@ -71,6 +72,7 @@ class _Converter:
         self._kinds: dict[str, Any] = {}
         self.modules: dict[str, Module] = {}
         self._initial: dict[str, list[int]] = {}
+        self.driven: set[int] = set()
 
     def module_of(self, block: Block) -> Module:
         """Return the block's module, after writing it unless a block of the same kind has one."""
@@ -137,10 +139,20 @@ class _Converter:
                 raise refusal(block, f"two instances would be called {instance}; rename a block")
             instances[instance] = modules[id(sub)].name
             parts.append(Instance(modules[id(sub)], f"{instance}_i", _connections(sub, modules[id(sub)], ports)))
-        contents = Contents(block, parts)
+        contents = Contents(block, parts, self.driven)
         path = self._directory / f"{name}.v"
         path.write_text(module_text(contents, name, self._header.format(module=name), self._vocabulary))
         return Module(name, path, contents.ports, instances)
+
+
+def _drivers(block: Block) -> Iterator[Any]:
+    """Yield the signals, and the lists of signals, that something in a block drives."""
+    if given := getattr(block.func, "given_verilog", None):
+        yield from (signal for name, signal in block_ports(block).items() if name in given.outputs)
+    for sub in block.subs:
+        driven = list(_drivers(sub) if isinstance(sub, Block) else drivers_of(sub))
+        yield from driven
+        yield from (one for memory in driven if isinstance(memory, list) for one in memory)
 
 
 def _initial(module: Module, ports: Mapping[str, SignalType]) -> list[int]:
@@ -231,7 +243,7 @@ def _description(value: Any) -> Any:
         return type(value.val), len(value), value.min, value.max, reset
     if isinstance(value, (list, tuple)):
         return tuple(map(_description, value))
-    if getattr(value, "is_interface", False):
+    if is_interface(value):
         places = {name: bits_of(field)[1:] for name, field in vars(value).items() if isinstance(field, Field)}
         return type(value), places, _description(vars(value))
     if isinstance(value, dict):

@@ -4,34 +4,37 @@
 No other file of the package touches them. They may change with any version of MyHDL, so its version is pinned.
 """
 
+import ast
 import importlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from io import StringIO
 from typing import Any
 
-from myhdl import ConcatSignal
+from myhdl import ConcatSignal, intbv
 from myhdl._block import _Block as Block
 from myhdl._enum import EnumItemType
-from myhdl._extractHierarchy import _getMemInfo
+from myhdl._extractHierarchy import _getMemInfo, _isMem
 from myhdl._instance import _Instantiator as Process
 from myhdl._ShadowSignal import _ShadowSignal as ShadowSignal
 from myhdl._ShadowSignal import _SliceSignal as SliceSignal
+from myhdl._ShadowSignal import _TristateDriver, _TristateSignal
 from myhdl._Signal import Constant, _PosedgeWaiterList
 from myhdl._Signal import _Signal as SignalType
 from myhdl._simulator import _signals as all_signals
-from myhdl.conversion import _toVerilog as to_verilog
-from myhdl.conversion._analyze import _analyzeGens
+from myhdl.conversion._analyze import _analyzeGens, _Ram, _Rom
 from myhdl.conversion._misc import _genUniqueSuffix, _kind
+from myhdl.conversion._toVerilog import _ConvertVisitor
 from myhdl.conversion._VHDLNameValidation import _vhdl_keywords as vhdl_keywords
 
 SOURCE_READERS = tuple((importlib.import_module(f"myhdl.{name}"), "_dedent") for name in ("_util", "_Waiter"))
 """Modules and names of the function that MyHDL calls to read a process's source."""
 
 __all__ = [
-    "SOURCE_READERS", "Block", "Constant", "DerivedClock", "EnumItemType", "Process", "ShadowSignal", "SignalType",
-    "SignedSlice", "SliceSignal", "all_signals", "analysed", "assigned", "bits_of", "keeps", "operands_of",
-    "printed", "set_name", "slices_of", "states_by_name", "states_of", "vhdl_keywords",
+    "SOURCE_READERS", "TRISTATE", "Block", "Constant", "DerivedClock", "EnumItemType", "Process", "ShadowSignal",
+    "SignalType", "SignedSlice", "SliceSignal", "Statements", "all_signals", "analysed", "assigned", "bits_of",
+    "declaration", "drivers_of", "is_memory", "keeps", "locals_of", "operands_of", "resets_of", "set_name", "slices_of",
+    "state_of", "states_by_name", "states_of", "table_of", "vhdl_keywords", "written_words",
 ]  # fmt: skip
 
 
@@ -127,45 +130,291 @@ def keeps(tree: Any) -> bool:
     return any(not isinstance(edge, SignalType) for edge in getattr(tree, "senslist", ())) or tree.kind == _kind.INITIAL
 
 
-def printed(tree: Any, sensitivity: Callable[[Sequence[str]], str]) -> tuple[str, str]:
-    """Return the Verilog of an analysed process, and that of the functions that it calls.
+TRISTATE = (_TristateSignal, _TristateDriver)
 
-    Args:
-        tree: the process, whose signals have their names.
-        sensitivity: returns the Verilog for what a process waits for, from the signals and edges.
-    """
-    kinds = {
-        _kind.ALWAYS: to_verilog._ConvertAlwaysVisitor,
-        _kind.INITIAL: to_verilog._ConvertInitialVisitor,
-        _kind.SIMPLE_ALWAYS_COMB: to_verilog._ConvertSimpleAlwaysCombVisitor,
-        _kind.ALWAYS_DECO: to_verilog._ConvertAlwaysDecoVisitor,
-        _kind.ALWAYS_SEQ: to_verilog._ConvertAlwaysSeqVisitor,
-        _kind.ALWAYS_COMB: to_verilog._ConvertAlwaysCombVisitor,
-    }
 
-    class Visitor(kinds[tree.kind]):
-        def writeSensitivityList(self, senslist):
-            self.write(sensitivity([edge._toVerilog() for edge in senslist]))
+def drivers_of(process: Process) -> Iterator[Any]:
+    """Yield the signals and lists of signals that a process drives."""
+    for name in process.outputs:
+        yield process.symdict.get(name)
 
-        def writeAlwaysHeader(self):
-            self.write("always ")
-            self.writeSensitivityList(self.tree.senslist)
-            # A block that declares nothing needs no name, which would cost Icarus a thread at each evaluation.
-            self.write(f" begin: {self.tree.name}" if self.tree.vardict else " begin")
+
+def written_words(tree: Any, name: str) -> list[int | None]:
+    """Return the index of each word of a list that an analysed process drives, None if it is no constant."""
+    found: list[int | None] = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Attribute) and node.attr == "next" and isinstance(node.value, ast.Subscript):
+            at, index = node.value.value, node.value.slice
+            if isinstance(at, ast.Name) and at.id == name:
+                known = index.value if isinstance(index, ast.Constant) else None
+                if isinstance(index, ast.Name) and index.id not in tree.vardict:
+                    known = tree.symdict.get(index.id)
+                found.append(known if isinstance(known, int) else None)
+    return found
+
+
+def is_memory(known: Any) -> str | None:
+    """Return the name of a list of signals that a process indexes, None for anything else."""
+    return _getMemInfo(known).name if isinstance(known, list) and _isMem(known) else None
+
+
+def table_of(known: Any) -> tuple[int, ...] | None:
+    """Return the numbers of a tuple that a process indexes, None for anything else."""
+    return known.rom if isinstance(known, _Rom) else None
+
+
+def state_of(tree: Any) -> dict[str, int]:
+    """Return the initial value of each variable that an analysed process keeps from one run to the next."""
+    changed = {node.value.id for node in ast.walk(tree) if isinstance(node, ast.Subscript)
+               and isinstance(node.ctx, ast.Store) and isinstance(node.value, ast.Name)}  # fmt: skip
+    kept = {name: int(value) for name, value in tree.nonlocaldict.items() if name in changed}
+    if tree.kind == _kind.ALWAYS:
+        for statement in tree.body[0].body[:-1]:
+            if isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Name):
+                kept[statement.targets[0].id] = int(_ConvertVisitor(tree, None).getVal(statement.value))
+    return kept
+
+
+def locals_of(tree: Any) -> dict[str, Any]:
+    """Return the variables of an analysed process that it does not keep, by name."""
+    return {name: value for name, value in getattr(tree, "vardict", {}).items() if name not in state_of(tree)}
+
+
+def resets_of(tree: Any) -> list[tuple[str, Any]]:
+    """Return what an analysed process sets when it is reset: names in Verilog, and initial values."""
+    signals = [(str(signal), signal._init) for signal in tree.sigregs]
+    return signals + [(name, intbv(value)) for name, _, value in tree.varregs]
+
+
+class Statements(_ConvertVisitor):
+    """A printer of an analysed process, or of a function that it calls. Another class prints its expressions."""
+
+    def __init__(self, tree: Any, expressions: Any):
+        super().__init__(tree, StringIO())
+        self._expressions = expressions
+        if tree.kind == _kind.ALWAYS_COMB:
+            self.okSigAss = False
+
+    def printed(self, label: str, sensitivity: Callable[[Sequence[str]], str]) -> str:
+        """Return a process; `sensitivity` returns the Verilog for what it waits for, from the signals and edges."""
+        tree, [node] = self.tree, self.tree.body
+        self.writeDoc(node)
+        if assigned(tree):
+            self.visit_stmt(node.body)
+            return self.buf.getvalue()
+        waits = tree.kind != _kind.INITIAL
+        self.write("always " + sensitivity([edge._toVerilog() for edge in tree.senslist]) if waits else "initial")
+        # A block that declares nothing needs no name, which would cost Icarus a thread at each evaluation.
+        self.write(f" begin: {label}" if label else " begin")
+        self.indent()
+        self._declare(locals_of(tree))
+        reset = getattr(tree, "reset", None)
+        if reset is not None:
+            self._lines(f"if ({reset} == {int(reset.active)}) begin")
             self.indent()
+            for name, value in resets_of(tree):
+                arrow = "=" if name in tree.vardict else "<="
+                self._lines(f"{name} {arrow} {self._expressions.initial(value)};")
+            self.dedent()
+            self._lines("end", "else begin")
+            self.indent()
+        self.visit_stmt(node.body[-1].body[1:] if tree.kind == _kind.ALWAYS else node.body)
+        if reset is not None:
+            self.dedent()
+            self._lines("end")
+        self.dedent()
+        self._lines("end")
+        return self.buf.getvalue()
 
-    to_verilog._annotateTypes([tree])
-    text, functions = StringIO(), StringIO()
-    Visitor(tree, text, functions).visit(tree)
-    return text.getvalue(), functions.getvalue()
+    def printed_function(self, name: str) -> str:
+        """Return a function, or a task, which has no result."""
+        tree, [node] = self.tree, self.tree.body
+        self.returnLabel = name
+        _end_in_returns(node.body, self._expressions)
+        word = "task" if tree.kind == _kind.TASK else "function"
+        result = "" if word == "task" else declaration("", tree.returnObj).rstrip() + " "
+        self.write(f"{word} {result.lstrip()}{name};")
+        self.indent()
+        for argument in tree.argnames:
+            way = "inout" if argument in tree.outputs else "input"
+            self._lines(f"{way} {declaration('', tree.symdict[argument])}{argument};".replace("  ", " "))
+        self._declare(tree.vardict)
+        self.dedent()
+        self._lines("begin")
+        self.indent()
+        self.visit_stmt(node.body)
+        self.dedent()
+        self._lines("end", f"end{word}", "")
+        return self.buf.getvalue()
+
+    def _lines(self, *lines: str) -> None:
+        for line in lines:
+            self.writeline()
+            self.write(line)
+
+    def _declare(self, variables: Mapping[str, Any]) -> None:
+        for name, known in variables.items():
+            one, words = (known.elObj, f" [0:{known.depth - 1}]") if isinstance(known, _Ram) else (known, "")
+            self._lines(f"{declaration('reg', one)}{name}{words};")
+
+    def _expression(self, node: Any) -> None:
+        self.write(self._expressions.text(node))
+
+    visit_BinOp = visit_BoolOp = visit_UnaryOp = visit_Compare = visit_IfExp = visit_Subscript = _expression
+    visit_Name = visit_Attribute = _expression
+
+    def visit_Call(self, node: Any) -> None:
+        self.visit_Print(node) if node.func.obj is print else self._expression(node)
+
+    def visit_Constant(self, node: Any) -> None:
+        self.write(_quoted(node.value) if isinstance(node.value, str) else self._expressions.text(node))
+
+    def visit_Print(self, node: Any) -> None:
+        node.format = [_quoted(part)[1:-1] if isinstance(part, str) else part for part in node.format]
+        super().visit_Print(node)
+
+    def visit_Assign(self, node: Any) -> None:
+        target, value = node.targets[0], node.value
+        if isinstance(value, ast.ListComp):
+            return
+        waits = _is_next(target) and self.okSigAss and not assigned(self.tree)
+        arrow = "<=" if waits else "="
+        index = value.slice if isinstance(value, ast.Subscript) else None
+        table = table_of(value.value.obj) if isinstance(index, ast.expr) else None
+        if table and self._expressions.constant(value) is None:
+            self.write(f"case ({self._expressions.text(index)})")
+            self.indent()
+            for place, number in enumerate(table):
+                left, right = self._expressions.assigned(target, ast.copy_location(ast.Constant(number), node))
+                self._lines(f"{place if place < len(table) - 1 else 'default'}: {left} {arrow} {right};")
+            self.dedent()
+            self._lines("endcase")
+            return
+        left, right = self._expressions.assigned(target, value)
+        self.write(f"{'assign ' * (assigned(self.tree) and _is_next(target))}{left} {arrow} {right};")
+
+    def visit_AugAssign(self, node: Any) -> None:
+        value = ast.copy_location(ast.BinOp(node.target, node.op, node.value), node)
+        left, right = self._expressions.assigned(node.target, value)
+        self.write(f"{left} = {right};")
+
+    def visit_Assert(self, node: Any) -> None:
+        self.write(f"if (!({self._expressions.text(node.test)})) begin")
+        self.indent()
+        self._lines('$display("*** AssertionError ***");')
+        self.dedent()
+        self._lines("end")
+
+    def visit_For(self, node: Any) -> None:
+        name, (start, stop, step) = node.target.id, self._expressions.loop(node)
+        going, change = ("<", "+") if step > 0 else (">=", "-")
+        end = stop if step > 0 else stop + 1
+        self.write(f"for ({name}={start}; {name}{going}{end}; {name}={name}{change}{abs(step)}) begin")
+        self.indent()
+        self.visit_stmt(node.body)
+        self.dedent()
+        self._lines("end")
+
+    def mapToCase(self, node: Any, *_: Any) -> None:
+        cases = [(self._expressions.case(node.caseVar, test.case[1]), suite) for test, suite in node.tests]
+        self._cases(node.caseVar, [*cases, *([("default", node.else_)] if node.else_ else [])])
+
+    def visit_Match(self, node: Any) -> None:
+        self._cases(node.subject, [(self._pattern(node, case), case.body) for case in node.cases])
+
+    def _pattern(self, node: Any, case: Any) -> str:
+        patterns = case.pattern.patterns if isinstance(case.pattern, ast.MatchOr) else [case.pattern]
+        texts = []
+        for pattern in patterns:
+            if isinstance(pattern, ast.MatchAs) and pattern.pattern is pattern.name is None and not case.guard:
+                return "default"
+            if not isinstance(pattern, ast.MatchValue) or case.guard:
+                self._expressions.refuse(pattern, "Verilog's case has numbers and states only; write if and elif")
+            known = getattr(pattern.value, "obj", None)
+            value = known if isinstance(known, EnumItemType) else self._expressions.constant(pattern.value)
+            texts.append(self._expressions.case(node.subject, value))
+        return ", ".join(texts)
+
+    def _cases(self, subject: Any, cases: Sequence[tuple[str, Any]]) -> None:
+        self.write(f"case ({self._expressions.text(subject)})")
+        self.indent()
+        for text, body in cases:
+            self._lines(f"{text}: begin")
+            self.indent()
+            self.visit_stmt(body)
+            self.dedent()
+            self._lines("end")
+        self.dedent()
+        self._lines("endcase")
+
+    def visit_Return(self, node: Any) -> None:
+        if isinstance(self.tree, ast.AST) and hasattr(self.tree, "hasReturn"):
+            bits = getattr(self.tree.returnObj, "_nrbits", 1 if isinstance(self.tree.returnObj, bool) else 32)
+            if node.value is not None:
+                self.write(f"{self.returnLabel} = {self._expressions.text(node.value, bits)};")
+            return
+        self._expressions.refuse(node, "synthesis refuses return in a process; write if and else around what it skips")
+
+    def visit_Break(self, node: Any) -> None:
+        self._expressions.refuse(node, "synthesis has no break and no continue; write if around what they skip")
+
+    visit_Continue = visit_Break
+
+    def visit_While(self, node: Any) -> None:
+        self._expressions.refuse(node, "synthesis has no such loop; write for with a range of numbers, or one "
+                                 "`while True:` around all of an @instance, with one yield at its head")  # fmt: skip
+
+    visit_Yield = visit_While
+
+
+def declaration(kind: str, known: Any) -> str:
+    """Return the declaration of a variable up to its name, from a value of its type."""
+    if isinstance(known, int):
+        return f"{kind} " if isinstance(known, bool) else "integer "
+    signed = "signed " * ((getattr(known, "_min", None) or 0) < 0)
+    return f"{kind} {signed}[{known._nrbits - 1}:0] "
+
+
+def _is_next(target: Any) -> bool:
+    """Return True for a signal's next value, or bits of it."""
+    while isinstance(target, ast.Subscript):
+        target = target.value
+    return isinstance(target, ast.Attribute)
+
+
+def _quoted(text: str) -> str:
+    """Return a text in Verilog's quotation marks."""
+    for character, instead in (("\\", "\\\\"), ('"', '\\"'), ("%", "%%"), ("\n", "\\n"), ("\t", "\\t")):
+        text = text.replace(character, instead)
+    return f'"{text}"'
+
+
+def _end_in_returns(body: list[Any], expressions: Any) -> None:
+    """Move what follows an `if` with a return into its other branches, so that nothing is skipped."""
+    for place, statement in enumerate(body):
+        if isinstance(statement, ast.Return):
+            del body[place + 1 :]
+        elif isinstance(statement, ast.If) and any(isinstance(part, ast.Return) for part in ast.walk(statement)):
+            rest = body[place + 1 :]
+            del body[place + 1 :]
+            for branch in [*(branch for _, branch in statement.tests), statement.else_]:
+                branch.extend(rest)
+                _end_in_returns(branch, expressions)
+        elif any(isinstance(part, ast.Return) for part in ast.walk(statement)):
+            expressions.refuse(statement, "Verilog has no return within a loop; assign the result, and return it last")
 
 
 @contextmanager
-def states_by_name(values: Iterable[Any]) -> Iterator[None]:
-    """Make a context in which MyHDL prints the names of states instead of their codes, for these items' types."""
+def states_by_name(values: Iterable[Any], names: Mapping[tuple[str, str], str]) -> Iterator[None]:
+    """Make a context in which MyHDL prints names of states instead of their codes, for these items' types.
+
+    Args:
+        values: an item of each type.
+        names: the name to print for each state's name and code.
+    """
     before: Mapping[Any, Any] = {type(value): type(value)._toVerilog for value in values}
     for kind in before:
-        kind._toVerilog = lambda item, dontcare=0: item._name
+        kind._toVerilog = lambda item, dontcare=0: names[item._name, item._val]
     try:
         yield
     finally:

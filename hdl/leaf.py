@@ -14,7 +14,7 @@ from myhdl import Simulation, StopSimulation, block, delay, instance
 from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.errors import faults_in_one_line
 from raycaster.hdl.hierarchy import Module, Port, convert_hierarchy
-from raycaster.hdl.records import Record, port_signals
+from raycaster.hdl.records import Record, is_interface, port_signals
 from raycaster.hdl.verilog_style import without_power_up
 
 Cycle = Mapping[str, int]
@@ -229,7 +229,7 @@ def _layouts(arguments: Mapping[str, Any]) -> dict[str, Record]:
     for name, value in arguments.items():
         if isinstance(value, Record):
             found[f"{name}_word"] = value
-        elif getattr(value, "is_interface", False):
+        elif is_interface(value):
             found |= _layouts({f"{name}_{attribute}": one for attribute, one in vars(value).items()})
     return found
 

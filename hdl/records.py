@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from myhdl import ConcatSignal
 
-from raycaster.hdl.internals import Block, SignalType, SignedSlice, SliceSignal, slices_of
+from raycaster.hdl.internals import Block, Process, SignalType, SignedSlice, SliceSignal, slices_of
 from raycaster.hdl.signals import Signed, Tied, Unconnected, initial, tied, unsigned
 
 
@@ -159,6 +159,17 @@ def signals_in(name: str, value: Any) -> Iterator[tuple[str, SignalType]]:
     elif isinstance(value, (list, tuple)):
         for index, element in enumerate(value):
             yield from signals_in(f"{name}_{index}", element)
-    elif getattr(value, "is_interface", False):
+    elif is_interface(value):
         for attribute, element in vars(value).items():
             yield from signals_in(f"{name}_{attribute}", element)
+
+
+def is_interface(value: Any, depth: int = 3) -> bool:
+    """Return True for an `Interface`, and for any other object with signals, as MyHDL does."""
+    if getattr(value, "is_interface", False):
+        return True
+    if isinstance(value, (type, Block, Process)) or inspect.isroutine(value) or inspect.ismodule(value) or not depth:
+        return False
+    return any(
+        isinstance(one, SignalType) or is_interface(one, depth - 1) for one in getattr(value, "__dict__", {}).values()
+    )

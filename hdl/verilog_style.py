@@ -10,8 +10,10 @@ from typing import Any
 
 from myhdl import ConcatSignal
 
+from raycaster.hdl import internals
 from raycaster.hdl.contents import Contents, Instance, Loading, is_signed
-from raycaster.hdl.internals import Constant, EnumItemType, SignalType, operands_of, printed, states_by_name, states_of
+from raycaster.hdl.expressions import Expressions, Range
+from raycaster.hdl.internals import Constant, EnumItemType, SignalType, Statements, operands_of, states_by_name
 from raycaster.hdl.port_comments import Comments
 from raycaster.hdl.records import Joined
 from raycaster.hdl.signals import Tied
@@ -35,22 +37,19 @@ def module_text(contents: Contents, name: str, header: str, vocabulary: Mapping[
         vocabulary: meanings of Python names in comments; see `raycaster.hdl.port_comments.Comments`.
     """
     comments = Comments(contents.block, vocabulary, LINE_LENGTH)
-    states = [
-        signal.val
-        for signal in [*contents.signals, *contents.arriving.values()]
-        if isinstance(signal.val, EnumItemType)
-    ]
-    with states_by_name(states):
-        parts = [_part(part, contents, comments) for part in contents.parts]
+    functions: dict[str, str] = {}
+    with states_by_name(contents.enumerations, contents.states):
+        parts = [_part(part, contents, comments, functions) for part in contents.parts]
+        initial_values = "\n".join(_initial_values(contents))
     sections = [
         f"{header}\n\n`timescale 1ns/10ps",
         f"{comments.purpose}module {name} (\n{_ports(contents, comments)}\n);",
-        "".join(f"localparam {constant};\n" for constant in dict.fromkeys(_constants(contents, states))),
+        "".join(f"localparam {constant};\n" for constant in _constants(contents)),
         "".join(_declarations(contents)),
-        "\n".join(_initial_values(contents)),
+        initial_values,
         "".join(_wires(contents)),
-        *(functions for _, functions in parts),
-        *(text for text, _ in parts),
+        *(text.replace("\0", name) for name, text in functions.items()),
+        *parts,
         "endmodule",
     ]
     text = "\n\n".join(stripped for section in sections if (stripped := section.strip("\n")))
@@ -89,11 +88,10 @@ def _ports(contents: Contents, comments: Comments) -> str:
     return ",\n".join(f"{above[name]}    {left:<{pad}} {name}" for left, name in rows)
 
 
-def _constants(contents: Contents, states: Sequence[Any]) -> Iterator[str]:
+def _constants(contents: Contents) -> Iterator[str]:
     """Yield the values of states, and of signals that never change."""
-    for state in states:
-        for name, code in states_of(state).items():
-            yield f"[{len(code) - 1}:0] {name} = {len(code)}'b{code}"
+    for (_, code), name in contents.states.items():
+        yield f"[{len(code) - 1}:0] {name} = {len(code)}'b{code}"
     for signal in contents.signals:
         if isinstance(signal, (Tied, Constant)):
             yield f"{_shape(signal) if len(signal) > 1 else ''}{contents.text(signal)} = {number(signal)}"
@@ -105,21 +103,28 @@ def _declarations(contents: Contents) -> Iterator[str]:
         if not isinstance(signal, (Tied, Constant)):
             yield f"{contents.driven.get(id(signal), 'wire')} {_shape(signal)}{contents.text(signal)};\n"
     for name, memory in contents.memories.items():
-        kinds = (contents.driven.get(id(one)) for one in [memory, *memory])
+        kinds = [contents.driven.get(id(one)) for one in [memory, *memory]]
+        if name in contents.passed and not contents.passed[name]:
+            kinds = ["wire"]
         yield f"{next(filter(None, kinds), 'reg')} {_shape(memory[0])}{name} [0:{len(memory) - 1}];\n"
+    for name, (known, _) in contents.variables.items():
+        yield f"{internals.declaration('reg', known)}{name};\n"
 
 
 def _initial_values(contents: Contents) -> Iterator[str]:
-    """Yield the contents of memories that nothing writes, then the values at power-up."""
+    """Yield the contents of memories that nothing writes, then the values at power-up of registers and memories."""
     loaded = [part.memory for part in contents.parts if isinstance(part, Loading)]
     signals = [*contents.arriving.values(), *contents.signals]
     values = [f"{contents.text(one)} = {_value(one)};" for one in signals if id(one) in contents.starting]
     lines: list[str] = []
+    values += [f"{name} = {value};" for name, (_, value) in contents.variables.items()]
     index = ""
     for name, memory in contents.memories.items():
         if any(memory is one for one in loaded):
             continue
         words = [f"{name}[{place}] = {_value(one)};" for place, one in enumerate(memory)]
+        if name in contents.passed and not contents.passed[name]:
+            continue
         if all(id(one) not in contents.driven for one in [memory, *memory]):
             yield "\n".join(["initial begin", *(f"    {word}" for word in words), "end\n"])
         elif id(memory) in contents.starting and len({int(one.val) for one in memory}) > 1:
@@ -138,7 +143,7 @@ def _initial_values(contents: Contents) -> Iterator[str]:
 def _value(signal: SignalType) -> str:
     """Return a signal's initial value: a plain number if it is small, the name of a state, or a sized number."""
     if isinstance(signal.val, EnumItemType):
-        return str(signal.val)
+        return signal.val._toVerilog()
     return str(int(signal.val)) if 0 <= int(signal.val) < 1 << 30 else number(signal)
 
 
@@ -146,18 +151,18 @@ def _wires(contents: Contents) -> Iterator[str]:
     """Yield the wires of fields, and the assignments of joined signals."""
     for field in contents.fields:
         yield f"wire {_shape(field)}{contents.text(field)} = {contents.bits(field)};\n"
+    for name, out in contents.passed.items():
+        for index, one in enumerate(contents.memories[name]):
+            sides = f"{name}[{index}]", contents.text(one)
+            yield f"assign {sides[out]} = {sides[not out]};\n"
     for signal in contents.signals:
         name = contents.text(signal)
         if isinstance(signal, Joined):
-            # Comments stand where MyHDL's longer bounds put them, [8-1:0] for [7:0].
-            values = [
-                re.sub(r"(\d+)(?=:)", lambda high: f"{int(high[1]) + 1}-1", contents.text(part))
-                for part in signal.parts.values()
-            ]
+            values = [contents.text(part) for part in signal.parts.values()]
             longest = max(map(len, values)) + 1
             yield f"assign {name} = {{\n"
             for after, (field, value) in enumerate(zip(signal.parts, values, strict=True), 1):
-                yield _folded(f"    {value + ',' * (after < len(values)):{longest}}  // {field}\n")
+                yield f"    {value + ',' * (after < len(values)):{longest}}  // {field}\n"
             yield "};\n"
         elif isinstance(signal, ConcatSignal):
             high = len(signal)
@@ -169,18 +174,34 @@ def _wires(contents: Contents) -> Iterator[str]:
                 high = low
 
 
-def _part(part: Any, contents: Contents, comments: Comments) -> tuple[str, str]:
-    """Return the Verilog of an instance, of a memory's initial contents or of a process, and of its functions."""
+def _part(part: Any, contents: Contents, comments: Comments, functions: dict[str, str]) -> str:
+    """Return the Verilog of an instance, of a memory's initial contents or of a process; add its functions."""
     if isinstance(part, Loading):
         name = next(name for name, memory in contents.memories.items() if memory is part.memory)
-        return f'// Initial contents of the memory.\ninitial $readmemh("{part.file}", {name});', ""
+        return f'// Initial contents of the memory.\ninitial $readmemh("{part.file}", {name});'
     if isinstance(part, Instance):
         pins = ",\n".join(f"    .{port}({contents.text(signal)})" for port, signal in part.connections.items())
         values = ",\n".join(f"    .{name}({value})" for name, value in part.module.parameters)
         kind = f"{part.module.name} #(\n{values}\n)" if values else part.module.name
-        return f"{kind} {part.name} (\n{pins}\n);", ""
-    text, functions = (_tidy(text, contents) for text in printed(part, _sensitivity))
-    return comments.of_process(part.function) + text.strip("\n"), functions
+        return f"{kind} {part.name} (\n{pins}\n);"
+    text = _statements(part, contents, functions).printed(contents.labels.get(id(part), ""), _sensitivity)
+    return comments.of_process(part.function) + text.strip("\n")
+
+
+def _statements(
+    tree: Any, contents: Contents, functions: dict[str, str], arguments: Mapping[str, Range] | None = None
+) -> Statements:
+    """Return the printer of a process or a function, which adds to `functions` those that it calls, by name."""
+
+    def name_of(called: Any, ranges: Sequence[Range]) -> str:
+        given = dict(zip(called.argnames, ranges, strict=True))
+        text = _statements(called, contents, functions, given).printed_function("\0")
+        known = next((name for name, other in functions.items() if other == text), None)
+        name = known or contents.free(called.body[0].name)
+        functions[name] = text
+        return name
+
+    return Statements(tree, Expressions(tree, name_of, arguments or {}))
 
 
 def _sensitivity(names: Sequence[str]) -> str:
@@ -192,63 +213,10 @@ def _sensitivity(names: Sequence[str]) -> str:
     return "@*"
 
 
-def _tidy(text: str, contents: Contents) -> str:
-    """Drop needless arithmetic, widths and parentheses from a process."""
-    widths = {contents.text(signal): len(signal) for signal in [*contents.signals, *contents.arriving.values()]}
-
-    def wrap(match: re.Match[str]) -> str:
-        """Drop the modulo of a sum if the target's width implies it: Verilog's assignment wraps around by itself."""
-        fits = widths.get(match[2]) == int(match[5])
-        return f"{match[1]}{match[2]}{match[3]}{match[4]};" if fits else match[0]
-
-    def size(match: re.Match[str]) -> str:
-        """Give a long constant the width of its target; MyHDL gives it the width of its value, or one bit more."""
-        return f"{match[1]}{widths.get(match[1].split()[0], int(match[2]))}'h{match[3]};"
-
-    text = re.sub(r"^( *(?:assign )?)(\w+)( <?= )\(\(([\w +*-]+)\) % \(1 << (\d+)\)\);", wrap, text, flags=re.M)
-    text = _folded(text)
-    text = re.sub(r"\b33'h(?=[89a-f][0-9a-f]{7}\b)", "32'h", text)  # MyHDL adds a bit for a sign that is not there
-    text = re.sub(r"\b(\w+ <?= )(\d+)'h([0-9a-f]+);", size, text)
-    return "\n".join(map(_drop_parentheses, text.splitlines()))
-
-
-def _folded(text: str) -> str:
-    """Replace constant arithmetic by numbers, such as the 2 * 8 of a slice's bounds."""
-    constant = r"[\d\s()*-][\d\s+()*-]*(?<=[\d)])"
-    for place in (rf"(?<=\[)({constant})(?=\]|:{constant}\])", rf"(?<=\d:)({constant})(?=\])",
-                  r"(?<==)(\d+-\d+)(?=;)", r"\((\d+ (?:[+*-]|<<) \d+)\)"):  # fmt: skip
-        text = re.sub(place, lambda match: str(eval(match[1])), text)
-    return text
-
-
-def _drop_parentheses(line: str) -> str:
-    """Drop parentheses around a whole expression, a negated name or a negative number that is compared or assigned."""
-    if line.lstrip().startswith("//"):
-        return line
-    line = re.sub(r"(?<!if )\((!\w+)\)", r"\1", line)
-    line = re.sub(r"((?:[=<>]=|[=<>]) )\((-\d+)\)", r"\1\2", line)
-    assigned = re.fullmatch(r"(.*? <?= )(\(.*\))(;)", line)
-    asked = re.fullmatch(r"(.*\bif \()(\(.*\))(\) begin)", line)
-    whole = assigned or asked
-    if whole and _is_one_group(whole[2]):
-        return whole[1] + whole[2][1:-1] + whole[3]
-    return line
-
-
 def _wrap(line: str) -> list[str]:
     """Break a line that is too long at spaces; a comment stays a comment."""
-    if len(line) <= LINE_LENGTH:
+    if len(line) <= LINE_LENGTH or '"' in line:
         return [line]
     indent = line[: len(line) - len(line.lstrip())]
     further = f"{indent}// " if line.lstrip().startswith("//") else f"{indent}    "
     return textwrap.wrap(line, LINE_LENGTH, subsequent_indent=further, break_long_words=False, break_on_hyphens=False)
-
-
-def _is_one_group(text: str) -> bool:
-    """Return True if the last parenthesis closes the first."""
-    depth = 0
-    for index, character in enumerate(text):
-        depth += (character == "(") - (character == ")")
-        if depth == 0:
-            return index == len(text) - 1
-    return False

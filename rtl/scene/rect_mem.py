@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The memory of the scene's rectangles."""
 
-from myhdl import always, always_comb, always_seq, block, concat, instances
+from myhdl import Signal, always, always_comb, always_seq, block, concat, instances, intbv
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, side_by_side, signed, tied, unsigned
@@ -38,7 +38,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     index_width = index_bits(config)
 
     slot = signed(address_width - 1)
-    index = unsigned(index_width)
+    index = Signal(intbv(0, min=0, max=count))
     in_table, write = bit(), bit()
     written = unsigned(count)
     stored, old, mask, data, merged = (written_of(config) for _ in range(5))

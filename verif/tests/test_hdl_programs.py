@@ -3,10 +3,10 @@
 
 import pytest
 from hdl_blocks import random_inputs
-from myhdl import Signal, always, always_comb, block, enum, instances, intbv
+from myhdl import Signal, always, always_comb, always_seq, block, concat, enum, instance, instances, intbv
 
 from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import bit, reset_signal, signed, unsigned
 from raycaster.sim.simulator import find_tool
 from raycaster.tools import run_yosys
 
@@ -78,6 +78,212 @@ def memories_at_power_up(clk, index, write, d, alike, apart, fixed):
     def look():
         apart.next = others[index]
         fixed.next = numbers[index]
+
+    return instances()
+
+
+@program(a=-4, b=-3, q=4, r=3, flag=1, y=-12, narrow=3, less=1, more=1, wide=-37, far=1, chosen=-7)
+def signs_are_mixed(a, b, q, r, flag, y, narrow, less, more, wide, far, chosen):
+    @always_comb
+    def combine():
+        if r == 0:
+            y.next = a + (q & 3) + r
+        elif r == 1:
+            y.next = a - (q >> 1) + int(r) + (q < r)
+        elif r == 2:
+            y.next = q.signed() + q - b * r + (not flag)
+        elif r == 3:
+            y.next = (q | 1) * a + q[3:1] + concat(flag, r)
+        elif r == 4:
+            y.next = (a if flag else q) + ~r - -q
+        elif r == 5:
+            y.next = (a + q) >> 1
+        elif r == 6:
+            y.next = (a - q) % 8 + ((q - r) % 4)
+        else:
+            y.next = (q ^ a) + (a & r) + (b << r[2:])
+
+    @always_comb
+    def compare():
+        less.next = a < (q & r)
+        more.next = (q - r > b) and (a > -3 or q != 15) and (q > -1)
+        narrow.next = (a + q + r) % 8
+
+    @always_comb
+    def go_far():
+        chosen.next = (a if flag else q) * 2 if r[0] else b
+        wide.next = a * 2147483648 - 4294967296 * flag
+        far.next = (wide > -2147483649) and (wide < 2147483648) and (wide != -4294967295)
+
+    return instances()
+
+
+@program(a=4, q=4, y=6, z=8, up=-9, clk=1, kept=5)
+def functions_with_results(clk, a, q, y, z, up, kept):
+    def total(x, z):
+        result = intbv(0)[6:]
+        result[:] = x + z
+        return result
+
+    def largest(first, second, third):
+        if first > second and first > third:
+            return first
+        if second > third:
+            return second
+        return third
+
+    def double(x):
+        return x * 2 - 3
+
+    def bump(v):
+        v[:] = (v + 3) % 32
+
+    @always_comb
+    def combine():
+        y.next = total(a, total(q, a))
+        z.next = largest(a, q, a) + total(q, q)
+        up.next = double(a) * 3 if a > 3 else double(q) >> 1
+
+    @always(clk.posedge)
+    def keep():
+        count = intbv(0)[5:]
+        count[:] = a
+        bump(count)
+        bump(count)
+        kept.next = count
+
+    return instances()
+
+
+SAME_NAMES, OTHER_NAMES = enum("IDLE", "end", "count"), enum("PAUSE", "count", "IDLE", "end")
+
+
+@program(clk=1, reset=reset_signal, go=2, y=2)
+def states_of_any_name(clk, reset, go, y):
+    one, other = Signal(SAME_NAMES.IDLE), Signal(OTHER_NAMES.count)
+
+    @always_seq(clk.posedge, reset=reset)
+    def count():
+        step = intbv(0)[2:]
+        step[:] = go
+        if step[0]:
+            one.next = SAME_NAMES.end
+            other.next = OTHER_NAMES.IDLE
+        elif one == SAME_NAMES.end:
+            one.next = SAME_NAMES.count
+        else:
+            other.next = OTHER_NAMES.end
+
+    @always_comb
+    def look():
+        y.next = concat(one == SAME_NAMES.count, other == OTHER_NAMES.end)
+
+    return instances()
+
+
+@block
+def drives_words(clk, words, d):
+    @always(clk.posedge)
+    def fill():
+        for k in range(4):
+            words[k].next = d + k
+
+    return instances()
+
+
+@block
+def reads_words(clk, words, index, y):
+    @always(clk.posedge)
+    def fetch():
+        y.next = words[index]
+
+    return instances()
+
+
+@program(clk=1, d=4, y=5, sum=7, index=2, given=lambda: [unsigned(5) for _ in range(4)])
+def lists_cross_blocks(clk, d, index, given, y, sum):
+    words = [unsigned(5) for _ in range(4)]
+    filling = drives_words(clk, words, d)
+    fetching = reads_words(clk, words, index, y)
+
+    @always_comb
+    def add():
+        sum.next = words[0] + words[2] + given[index]
+
+    return instances()
+
+
+class Side:
+    def __init__(self):
+        self.valid, self.data = bit(), unsigned(4)
+
+
+class Sides:
+    def __init__(self):
+        self.left, self.right = Side(), Side()
+
+
+@block
+def stage(clk, source, sink):
+    @always(clk.posedge)
+    def go():
+        sink.data.next = source.data
+        sink.valid.next = source.valid
+
+    return instances()
+
+
+@program(clk=1, reset=reset_signal, unused=3, sides=Sides, data=4, valid=1, seen=4)
+def plain_interfaces(clk, reset, unused, sides, data, valid, seen):
+    inner = Sides()
+    first = stage(clk, inner.left, inner.right)
+    second = stage(clk, sides.left, sides.right)
+
+    @always_comb
+    def enter():
+        inner.left.data.next = data
+        inner.left.valid.next = valid
+
+    @always_seq(clk.posedge, reset=reset)
+    def leave():
+        if inner.right.valid:
+            seen.next = inner.right.data
+
+    return instances()
+
+
+@program(clk=1, a=12, index=4, k=2, y=12, bits=4, picked=5, kept=4, mode=-3)
+def bits_and_variables(clk, a, index, k, y, bits, picked, kept, mode):
+    steps = (2, 5, -9, 14)
+    upper = a(12, 4)
+
+    @always_comb
+    def cut():
+        for i in range(6):
+            y.next[2 * i + 2 : 2 * i] = a[2 * i + 2 : 2 * i] ^ (i % 4)
+        bits.next[0] = a[index]
+        bits.next[1] = upper[7] ^ upper[index[3:]]
+        bits.next[4:2] = upper[6:2][3:1]
+
+    @always_comb
+    def pick():
+        n = 0
+        for i in range(4):
+            n += a[i]
+        if mode == -1:
+            picked.next = n + steps[1]
+        elif mode == 2:
+            picked.next = n * steps[0]
+        else:
+            picked.next = n
+
+    @instance
+    def keep():
+        count = intbv(9)[4:]
+        while True:
+            yield clk.posedge
+            count[:] = (count + k) % 16
+            kept.next = count
 
     return instances()
 

@@ -1,0 +1,731 @@
+# SPDX-License-Identifier: MIT
+"""Expressions of a process in Verilog: the only place that knows what Verilog makes of one.
+
+MyHDL computes with integers of any size. Verilog computes a whole expression with the bits of its widest operand or of
+its target, and without signs if any operand has none. So each expression gets a context, a width and a sign: if it has
+a signed operand, all others are cast. The range of each operand is known. Where a result is compared, shifted to the
+right, divided or used as an index, a result that the context does not hold is refused. Elsewhere only its lowest bits
+count, and they are right for any widths: `total.next = a + b + c` is.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+import re
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple, NoReturn
+
+from myhdl import concat, intbv, now
+
+from raycaster.hdl import internals
+from raycaster.hdl.errors import UserError
+from raycaster.hdl.internals import EnumItemType, ShadowSignal, SignalType, SliceSignal, is_memory, table_of
+
+INTEGER_BITS = 32
+"""Bits of a number, or of an integer variable, in Verilog."""
+
+LARGEST_VARIABLE = 1 << 20
+"""Assumed end of the range of an integer variable that counts without a known end."""
+
+SYMBOLS = {
+    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Mod: "%", ast.FloorDiv: "/", ast.LShift: "<<", ast.RShift: ">>>",
+    ast.BitOr: "|", ast.BitAnd: "&", ast.BitXor: "^", ast.Invert: "~", ast.USub: "-", ast.UAdd: "+", ast.Eq: "==",
+    ast.NotEq: "!=", ast.Gt: ">", ast.GtE: ">=", ast.Lt: "<", ast.LtE: "<=", ast.And: "&&", ast.Or: "||",
+}  # fmt: skip
+
+COMPUTED: Mapping[type, Callable[..., int]] = {
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.BitOr: operator.or_,
+    ast.BitAnd: operator.and_, ast.BitXor: operator.xor, ast.Mod: operator.mod, ast.FloorDiv: operator.floordiv,
+    ast.LShift: lambda value, places: value << min(max(places, 0), 1 << 10),
+    ast.RShift: lambda value, places: value >> max(places, 0), ast.Pow: lambda base, power: base ** min(power, 1 << 10),
+    ast.USub: operator.neg, ast.UAdd: operator.pos, ast.Invert: operator.invert,
+}  # fmt: skip
+"""Operators of numbers."""
+
+CARRYING = (ast.Add, ast.Sub, ast.Mult, ast.LShift, ast.BitAnd, ast.BitOr, ast.BitXor)
+"""Operators whose lowest bits depend on the lowest bits of their operands only."""
+
+
+class Range(NamedTuple):
+    """Values of an expression in MyHDL."""
+
+    low: int
+    high: int
+
+    def bits(self, signed: bool) -> int:
+        """Return the bits that hold them."""
+        return max((~self.low).bit_length() if self.low < 0 else 0, self.high.bit_length()) + signed
+
+
+class Context(NamedTuple):
+    """The bits with which Verilog computes an expression, and True if with signs."""
+
+    bits: int
+    signed: bool
+
+
+class Expressions:
+    """The expressions of an analysed process, or of a function that it calls, as Verilog."""
+
+    def __init__(self, tree: Any, function_name: Callable[[Any, list[Range]], str], arguments: Mapping[str, Range]):
+        """Find the ranges of variables.
+
+        Args:
+            tree: the process or function.
+            function_name: returns the name in Verilog of a function, from its tree and the ranges of its arguments.
+            arguments: ranges of a function's arguments.
+        """
+        self._tree, self._function_name = tree, function_name
+        self._ranges = dict(arguments)
+        self._find_ranges()
+
+    def refuse(self, node: Any, reason: str) -> NoReturn:
+        """Refuse a line."""
+        raise UserError(f"{self._tree.sourcefile}:{self._tree.lineoffset + node.lineno}: {reason}")
+
+    # Statements.
+
+    def text(self, node: ast.expr, bits: int | None = None) -> str:
+        """Return an expression that is assigned to so many bits; or of which all bits count, such as a condition."""
+        constant = self.constant(node)
+        if type(constant) is int and bits and abs(constant) >= 1 << 30:
+            return f"{'-' * (constant < 0)}{bits}'h{abs(constant):x}"
+        text = self._root(node, bits)
+        return text[1:-1] if _is_one_group(text) else text
+
+    def assigned(self, target: ast.expr, value: ast.expr) -> tuple[str, str]:
+        """Return the two sides of an assignment."""
+        outer = target.value if isinstance(target, ast.Attribute) else target
+        bits, _ = self._type(outer)
+        inner: Any = target
+        while isinstance(inner, (ast.Subscript, ast.Attribute)):
+            at = inner.value
+            copy = isinstance(at, ast.Subscript) and (isinstance(at.slice, ast.Slice) or not self.is_word(at))
+            if copy and (isinstance(inner, ast.Attribute) or isinstance(inner.slice, ast.Slice)):
+                text = ast.unparse(at)
+                name = text.partition("[")[0].removesuffix(".next")
+                self.refuse(target, f"MyHDL assigns to a copy of these bits; write {name}.next[...]")
+            inner = at
+        target = outer
+        if isinstance(target, ast.Name) and _is_integer(self._object(target)):
+            limit = self.range(value)
+            if max(limit.bits(True), 1) > INTEGER_BITS:
+                self.refuse(value, f"{target.id} is a Verilog integer of {INTEGER_BITS} bits, and the result has "
+                            f"{limit.bits(True)}; write {target.id} = intbv(0, min=..., max=...)")  # fmt: skip
+        modulo = self._power(value.right) if isinstance(value, ast.BinOp) and isinstance(value.op, ast.Mod) else None
+        if modulo == bits and isinstance(value, ast.BinOp) and isinstance(value.right, ast.BinOp):
+            value = value.left  # an assignment wraps around by itself
+        return self._place(target), self.text(value, bits)
+
+    def initial(self, value: Any) -> str:
+        """Return an initial value."""
+        if isinstance(value, EnumItemType):
+            return value._toVerilog()
+        number, bits = int(value), max(len(value), 1) if isinstance(value, intbv) else 1
+        return str(number) if abs(number) < 1 << 30 else f"{'-' * (number < 0)}{bits}'h{abs(number):x}"
+
+    def case(self, subject: ast.expr, value: Any) -> str:
+        """Return a value that a case compares with its subject."""
+        if isinstance(value, EnumItemType):
+            return value._toVerilog()
+        if not isinstance(value, int):
+            self.refuse(subject, "Verilog's case has numbers and states only; write if and elif")
+        bits, signed = self._type(subject)
+        return str(int(value)) if signed or value < 0 else f"{bits if value >= 1 << 30 else ''}'h{value:x}"
+
+    def is_word(self, node: ast.Subscript) -> bool:
+        """Return True for a word of a memory."""
+        known = self._object(node.value)
+        return bool(is_memory(known)) or type(known).__name__ == "_Ram"
+
+    # Values.
+
+    def constant(self, node: ast.expr | None) -> Any:
+        """Return a number, or True or False; None for an expression that is not constant."""
+        match node:
+            case ast.Constant(value=int(value)):
+                return value
+            case ast.Name() | ast.Attribute():
+                known = self._object(node)
+                variable = isinstance(node, ast.Name) and (node.id in self._tree.vardict or node.id in self._ranges)
+                return known if isinstance(known, int) and not variable else None
+            case ast.BinOp() if type(node.op) in COMPUTED:
+                sides = self.constant(node.left), self.constant(node.right)
+                if None in sides or (isinstance(node.op, (ast.Mod, ast.FloorDiv)) and not sides[1]):
+                    return None
+                return COMPUTED[type(node.op)](*map(int, sides))
+            case ast.UnaryOp() if type(node.op) in COMPUTED:
+                value = self.constant(node.operand)
+                return None if value is None else COMPUTED[type(node.op)](int(value))
+            case ast.Call(args=[argument]) if _called(node) is len:
+                return len(self._object(argument))
+            case ast.Call(args=[ast.Constant(value=str(value))]) if _called(node) is ord:
+                return ord(value[0])
+            case ast.Call(args=[argument]) if _called(node) is int:
+                return self.constant(argument)
+            case ast.Subscript() if (table := table_of(self._object(node.value))) is not None:
+                index = self.constant(node.slice) if isinstance(node.slice, ast.expr) else None
+                return None if index is None or not -len(table) <= index < len(table) else table[index]
+        return None
+
+    def range(self, node: ast.expr) -> Range:
+        """Return the values that an expression may have."""
+        if (constant := self.constant(node)) is not None:
+            return Range(int(constant), int(constant))
+        match node:
+            case ast.BinOp():
+                return self._range_of_operator(node)
+            case ast.UnaryOp(op=ast.USub()):
+                low, high = self.range(node.operand)
+                return Range(-high, -low)
+            case ast.UnaryOp(op=ast.Invert()):
+                low, high = self.range(node.operand)
+                bits = self._own_bits(node.operand)
+                return Range(0, (1 << bits) - 1) if bits else Range(~high, ~low)
+            case ast.IfExp():
+                return _either(self.range(node.body), self.range(node.orelse))
+            case ast.Call(args=[value, *_]) if _called(node) in (int, intbv) or _is_modbv(_called(node)):
+                return self.range(value)
+            case ast.Call() if hasattr(node, "tree"):
+                return node.tree.returned if hasattr(node.tree, "returned") else self._returned(node)
+            case ast.Name(id=name) if name in self._ranges:
+                return self._ranges[name]
+            case ast.Subscript(slice=ast.Slice(lower=None, upper=bits)) if bits is not None:
+                places = self.range(bits)
+                low, high = self.range(node.value)
+                return Range(low >> places.low if low < 0 else 0, high >> places.low)
+            case ast.Subscript() if (table := table_of(self._object(node.value))) is not None:
+                return Range(min(table), max(table))
+        known = self._object(node)
+        known = known.val if isinstance(known, SignalType) else known
+        if isinstance(node, (ast.Name, ast.Attribute)) or (
+            isinstance(node, ast.Subscript) and is_memory(self._object(node.value))
+        ):
+            if isinstance(known, intbv) and len(known):
+                return Range(known.min or 0, (known.max or 1 << len(known)) - 1)
+            if isinstance(known, int) and not isinstance(known, bool):
+                return Range(-LARGEST_VARIABLE, LARGEST_VARIABLE)
+        bits, signed = self._type(node)
+        return Range(-(1 << bits - 1), (1 << bits - 1) - 1) if signed else Range(0, (1 << bits) - 1)
+
+    def _range_of_operator(self, node: ast.BinOp) -> Range:
+        one, other = self.range(node.left), self.range(node.right)
+        compute = COMPUTED.get(type(node.op))
+        if isinstance(node.op, ast.Mod):
+            return Range(min(other.low + 1, 0), max(other.high - 1, 0))
+        if isinstance(node.op, ast.BitAnd) and max(one.low, other.low) >= 0:
+            return Range(0, min(part.high for part in (one, other) if part.low >= 0))
+        if isinstance(node.op, ast.BitAnd) and (one.low >= 0 or other.low >= 0):
+            return Range(0, one.high if one.low >= 0 else other.high)
+        if isinstance(node.op, (ast.BitAnd, ast.BitOr, ast.BitXor)):
+            around = _either(one, other)
+            bits = around.bits(False)
+            return Range(-(1 << bits) if around.low < 0 else 0, (1 << bits) - 1)
+        if isinstance(node.op, ast.FloorDiv) and other.low <= 0:
+            return Range(min(one.low, -one.high), max(one.high, -one.low))
+        values = [compute(a, b) for a in one for b in other] if compute else [*one, *other]
+        return Range(min(values), max(values))
+
+    def _find_ranges(self) -> None:
+        """Find the ranges of loops' variables, and those of integer variables from what is assigned to them."""
+        for loop in (node for node in ast.walk(self._tree) if isinstance(node, ast.For)):
+            self._ranges[loop.target.id] = Range(0, 0)
+        assigned: dict[str, list[ast.expr]] = {}
+        for node in ast.walk(self._tree):
+            if isinstance(node, (ast.Assign, ast.AugAssign)):
+                target = node.targets[0] if isinstance(node, ast.Assign) else node.target
+                value = node.value
+                if isinstance(node, ast.AugAssign):
+                    value = ast.copy_location(ast.BinOp(node.target, node.op, node.value), node)
+                if isinstance(target, ast.Name) and _is_integer(self._tree.vardict.get(target.id)):
+                    assigned.setdefault(target.id, []).append(value)
+                    if target.id in self._ranges:
+                        self.refuse(node, f"{target.id} is the variable of a loop; assign to another one")
+        for name in assigned:
+            self._ranges[name] = Range(0, 0)
+        for attempt in range(4):
+            for loop in (node for node in ast.walk(self._tree) if isinstance(node, ast.For)):
+                start, stop, step = self.loop(loop)
+                last = stop - 1 if step > 0 else stop + 1
+                self._ranges[loop.target.id] = Range(min(start, last), max(start, last))
+            for name, values in assigned.items():
+                before = self._ranges[name]
+                around = before
+                for value in values:
+                    around = _either(around, self.range(value))
+                if attempt == 3 and around.low < before.low:
+                    around = around._replace(low=-LARGEST_VARIABLE)
+                if attempt == 3 and around.high > before.high:
+                    around = around._replace(high=LARGEST_VARIABLE)
+                self._ranges[name] = around
+
+    def loop(self, node: ast.For) -> tuple[int, int, int]:
+        """Return the bounds of a loop: the first value, the end and the step."""
+        assert isinstance(node.iter, ast.Call)
+        values = [self.constant(argument) for argument in node.iter.args]
+        if None in values:
+            self.refuse(node, "synthesis needs constant bounds of a loop; write a number, and if in the loop")
+        if _called(node.iter) is range:
+            start, stop, step = (0, *values, 1) if len(values) == 1 else (*values, 1)[:3]
+            return start, stop, step
+        first, end, step = (*values, 0, 1) if len(values) == 1 else (*values, 1)[:3]
+        return first - 1, end - 1, -step
+
+    def _returned(self, node: ast.Call) -> Range:
+        """Return the range of a function's result."""
+        tree = node.tree
+        inner = Expressions(tree, self._function_name, dict(zip(tree.argnames, self.arguments(node), strict=True)))
+        returns = [one.value for one in ast.walk(tree) if isinstance(one, ast.Return) and one.value is not None]
+        if not returns or not _is_integer(tree.returnObj):
+            return inner.range(returns[0]) if returns and isinstance(tree.returnObj, bool) else _all_of(tree.returnObj)
+        around = inner.range(returns[0])
+        for value in returns[1:]:
+            around = _either(around, inner.range(value))
+        return around
+
+    def arguments(self, node: ast.Call) -> list[Range]:
+        """Return the ranges of a call's arguments."""
+        return [self.range(argument) for argument in node.args]
+
+    # Types in Verilog.
+
+    def _object(self, node: Any) -> Any:
+        """Return what MyHDL knows of an expression: its signal, its memory, or a value of its type."""
+        if isinstance(node, ast.Name) and node.id in self._tree.vardict:
+            return self._tree.vardict[node.id]
+        return _known(node)
+
+    def _type(self, node: ast.expr) -> tuple[int, bool]:
+        """Return the bits of an operand, and True if Verilog takes it as two's complement."""
+        match node:
+            case ast.Compare() | ast.BoolOp() | ast.UnaryOp(op=ast.Not()):
+                return 1, False
+            case ast.Subscript(slice=ast.Slice(lower=lower, upper=upper)):
+                bits, signed = self._type(node.value)
+                if lower is None and upper is None:
+                    return bits, signed
+                if lower is None and signed:
+                    return bits, True
+                return self._width(node, bits), False
+            case ast.Subscript() if is_memory(self._object(node.value)):
+                return _shape(self._object(node))
+            case ast.Subscript() if (table := table_of(self._object(node.value))) is not None:
+                around = Range(min(table), max(table))
+                return around.bits(around.low < 0), around.low < 0
+            case ast.Subscript(value=ast.Name()) if type(self._object(node.value)).__name__ == "_Ram":
+                return _shape(self._object(node.value).elObj)
+            case ast.Subscript():
+                return 1, False
+            case ast.Call() if _called(node) == intbv.signed and isinstance(node.func, ast.Attribute):
+                return self._type(node.func.value)[0], True
+            case ast.Call() if _called(node) is concat:
+                return sum(self._operand_of_concat(argument)[0] for argument in node.args), False
+            case ast.Call() if _called(node) is bool:
+                return 1, False
+            case ast.Call() if hasattr(node, "tree"):
+                return _shape(node.tree.returnObj)
+            case ast.Call() if _called(node) is now:
+                return 64, False
+            case ast.Attribute(value=inner, attr="val" | "next"):
+                return self._type(inner)
+            case ast.Name() | ast.Attribute():
+                return _shape(self._object(node))
+        return 1, False
+
+    def _operand_of_concat(self, node: ast.expr) -> tuple[int, str]:
+        """Return the bits and the text of an operand of concat."""
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            return len(node.value), f"{len(node.value)}'b{node.value}"
+        constant = self.constant(node)
+        if isinstance(constant, bool):
+            return 1, f"1'b{int(constant)}"
+        if constant is not None or isinstance(node, (ast.BinOp, ast.IfExp)):
+            self.refuse(node, "concat needs operands of a known width; assign it to a signal")
+        return self._type(node)[0], self._root(node, None)
+
+    def _own_bits(self, node: ast.expr) -> int:
+        """Return the bits that MyHDL's ~ inverts, 0 if it makes a negative number."""
+        known = self._object(node)
+        known = known.val if isinstance(known, SignalType) else known
+        bits, signed = self._type(node)
+        leaf = isinstance(node, (ast.Name, ast.Attribute, ast.Subscript, ast.Call))
+        return 0 if signed or not leaf or not isinstance(known, intbv) else bits
+
+    def _leaves(self, node: ast.expr) -> Iterator[ast.expr]:
+        """Yield the operands that share a context."""
+        if self.constant(node) is not None:
+            yield node
+            return
+        parts: list[ast.expr]
+        match node:
+            case ast.BinOp(op=ast.LShift() | ast.RShift()):
+                parts = [node.left]
+            case ast.BinOp():
+                parts = [node.left, node.right]
+            case ast.UnaryOp(op=ast.USub() | ast.UAdd()):
+                parts = [node.operand]
+            case ast.UnaryOp(op=ast.Invert()):
+                parts = [node.operand]
+            case ast.IfExp():
+                parts = [node.body, node.orelse]
+            case ast.Call(args=[value, *_]) if _called(node) in (int, intbv) or _is_modbv(_called(node)):
+                parts = [value]
+            case _:
+                yield node
+                return
+        for part in parts:
+            yield from self._leaves(part)
+
+    def _context(self, nodes: list[ast.expr], bits: int | None) -> Context:
+        """Return the context of an expression, or of the two sides of a comparison."""
+        leaves = [leaf for node in nodes for leaf in self._leaves(node)]
+        constants = [(leaf, self.constant(leaf)) for leaf in leaves]
+        signed = any(self._type(leaf)[1] for leaf, constant in constants if constant is None)
+        signed = signed or any(self._is_negative(node, bits) for node in nodes)
+        widths = [
+            self._type(leaf)[0] + (signed and not self._type(leaf)[1]) if constant is None
+            else max(INTEGER_BITS, Range(constant, constant).bits(signed)) if not isinstance(constant, bool)
+            else 1 + signed
+            for leaf, constant in constants
+        ]  # fmt: skip
+        return Context(max([bits or 0, *widths]), signed)
+
+    def _is_negative(self, node: ast.expr, needed: int | None) -> bool:
+        """Return True if a part of an expression that is computed in full may be below 0."""
+        if needed is None and self.range(node).low < 0:
+            return True
+        if self.constant(node) is not None:
+            return False
+        match node:
+            case ast.BinOp(op=ast.RShift()):
+                return self._is_negative(node.left, None)
+            case ast.BinOp(op=ast.LShift()):
+                return self._is_negative(node.left, needed)
+            case ast.BinOp():
+                power = self._power(node.right) if isinstance(node.op, ast.Mod) else None
+                needed = needed if isinstance(node.op, CARRYING) else power
+                return self._is_negative(node.left, needed) or self._is_negative(node.right, needed)
+            case ast.UnaryOp(op=ast.USub() | ast.UAdd() | ast.Invert()):
+                return self._is_negative(node.operand, needed)
+            case ast.IfExp():
+                return self._is_negative(node.body, needed) or self._is_negative(node.orelse, needed)
+        return False
+
+    def _power(self, node: ast.expr) -> int | None:
+        """Return the exponent of a constant power of two."""
+        value = self.constant(node)
+        return value.bit_length() - 1 if value and value > 0 and value & value - 1 == 0 else None
+
+    # Text.
+
+    def _root(self, node: ast.expr, bits: int | None) -> str:
+        """Return an expression with a context of its own; `bits` is the number of its lowest bits that count."""
+        return self._emit(node, self._context([node], bits), bits)
+
+    def _emit(self, node: ast.expr, context: Context, needed: int | None) -> str:
+        """Return an expression in a context."""
+        constant = self.constant(node)
+        if constant is not None:
+            return self._number(node, constant, context)
+        match node:
+            case ast.BinOp(op=ast.LShift() | ast.RShift() as op):
+                if self.range(node.right).low < 0:
+                    self.refuse(node, "the number of places may be below 0; give it a range without a sign")
+                left = self._emit(node.left, context, needed if isinstance(op, ast.LShift) else None)
+                text = f"({left} {SYMBOLS[type(op)]} {self._root(node.right, None)})"
+            case ast.BinOp(op=ast.Mod() | ast.FloorDiv()):
+                text = self._divided(node, context, needed)
+            case ast.BinOp() if type(node.op) not in SYMBOLS:
+                self.refuse(node, f"{ast.unparse(node)}: Verilog has no such operator here; write it out")
+            case ast.BinOp():
+                left, right = (self._emit(side, context, needed) for side in (node.left, node.right))
+                text = f"({left} {SYMBOLS[type(node.op)]} {right})"
+            case ast.UnaryOp(op=ast.Invert()):
+                own = self._own_bits(node.operand)
+                if own and own < (context.bits if needed is None else needed):
+                    text = f"{{~{self._root(node.operand, own)}}}"
+                    return f"$signed({{1'b0, {text}}})" if context.signed else text
+                text = f"(~{self._emit(node.operand, context, needed)})"
+            case ast.UnaryOp(op=ast.USub() | ast.UAdd() as op):
+                text = f"({SYMBOLS[type(op)]}{self._emit(node.operand, context, needed)})"
+            case ast.IfExp():
+                parts = [self._emit(part, context, needed) for part in (node.body, node.orelse)]
+                text = f"({self._root(node.test, None)} ? {' : '.join(parts)})"
+            case ast.Call(args=[value, *_]) if _called(node) in (int, intbv) or _is_modbv(_called(node)):
+                return self._emit(value, context, needed)
+            case _:
+                text = self._operand(node)
+                return f"$signed({{1'b0, {text}}})" if context.signed and not self._type(node)[1] else text
+        self._fits(node, context, needed)
+        return text
+
+    def _fits(self, node: ast.expr, context: Context, needed: int | None) -> None:
+        """Refuse a result of which bits are lost that are needed."""
+        own = self.range(node)
+        bits = own.bits(context.signed)
+        if needed is None and bits > context.bits:
+            kind = f"signed({bits})" if own.low < 0 else f"a signal of {own.bits(False)} bits"
+            self.refuse(node, f"the result has {bits if own.low < 0 else own.bits(False)} bits, and loses some; "
+                        f"assign it to {kind}")  # fmt: skip
+
+    def _divided(self, node: ast.BinOp, context: Context, needed: int | None) -> str:
+        """Return a quotient or a remainder."""
+        power = self._power(node.right) if isinstance(node.op, ast.Mod) else None
+        dividend, divisor = self.range(node.left), self.range(node.right)
+        if power is not None and (dividend.low < 0 or dividend.bits(context.signed) > context.bits):
+            left = self._emit(node.left, context, power)
+            return f"({left} & {self._number(node, (1 << power) - 1, context)})"
+        if power is None and min(dividend.low, divisor.low) < 0:
+            self.refuse(node, "below 0 Verilog rounds up, and Python down; shift to the right, or take bits")
+        left = self._emit(node.left, context, power)
+        big = power is not None and power > 16
+        right = f"(1 << {power})" if big and power < 31 else self._emit(node.right, context, None)
+        return f"({left} {SYMBOLS[type(node.op)]} {right})"
+
+    def _number(self, node: ast.expr, value: Any, context: Context) -> str:
+        """Return a constant; a name of True or False is a bit."""
+        if isinstance(value, bool):
+            return f"$signed({{1'b0, 1'b{int(value)}}})" if context.signed else f"1'b{int(value)}"
+        if isinstance(value, EnumItemType):
+            return str(value)
+        text = str(abs(value))
+        if abs(value) >= 1 << 30:
+            bits = max(INTEGER_BITS, Range(value, value).bits(context.signed))
+            text = f"{bits}'{'s' * context.signed}h{abs(value):x}"
+        return f"(-{text})" if value < 0 else text
+
+    def _operand(self, node: ast.expr) -> str:
+        """Return an operand: a name, bits, a comparison, a call."""
+        match node:
+            case ast.Name() | ast.Attribute(attr="val" | "next") | ast.Subscript():
+                return self._place(node)
+            case ast.Attribute() if isinstance(self._object(node), EnumItemType):
+                return self._object(node)._toVerilog()
+            case ast.Constant(value=str(text)):
+                return f'"{text}"' if set(text) - {"0", "1"} else f"{len(text)}'b{text}"
+            case ast.Constant(value=None):
+                self.refuse(node, "tristate signals are not supported; use an input, an output and an enable")
+            case ast.Compare(left=left, ops=[op], comparators=[right]):
+                if type(op) not in SYMBOLS:
+                    self.refuse(node, f"Verilog has no {_words(op)}; write == or != for each value")
+                context = self._context([left, right], None)
+                sides = [self._emit(side, context, None) for side in (left, right)]
+                if sides[1][:2] == "(-" and re.fullmatch(r"\(-[\w']+\)", sides[1]):
+                    sides[1] = sides[1][1:-1]
+                return f"({sides[0]} {SYMBOLS[type(op)]} {sides[1]})"
+            case ast.BoolOp():
+                return f"({f' {SYMBOLS[type(node.op)]} '.join(self._root(value, None) for value in node.values)})"
+            case ast.UnaryOp(op=ast.Not()):
+                text = self._root(node.operand, None)
+                return f"!{text}" if re.fullmatch(r"\w+", text) else f"(!{text})"
+            case ast.Call():
+                return self._call(node)
+        self.refuse(node, f"Verilog has no {ast.unparse(node)}; write it otherwise")
+
+    def _call(self, node: ast.Call) -> str:
+        function = _called(node)
+        if function == intbv.signed and isinstance(node.func, ast.Attribute):
+            inner = node.func.value
+            return self._operand(inner) if self._type(inner)[1] else f"$signed({self._operand(inner)})"
+        if function is concat:
+            return f"{{{', '.join(self._operand_of_concat(argument)[1] for argument in node.args)}}}"
+        if function is bool:
+            context = self._context([node.args[0]], None)
+            return f"({self._emit(node.args[0], context, None)} != 0)"
+        if function is now:
+            return "$time"
+        if hasattr(node, "tree"):
+            tree = node.tree
+            name = self._function_name(tree, self.arguments(node))
+            texts = []
+            for argument, formal in zip(node.args, tree.argnames, strict=True):
+                bits, signed = _shape(tree.symdict[formal])
+                texts.append(self.text(argument))
+                if self.range(argument).bits(signed) > bits:
+                    self.refuse(node, f"{formal} has {bits} bits in Verilog; assign the argument to a signal first")
+            return f"{name}({', '.join(texts)})"
+        name = getattr(function, "__name__", ast.unparse(node.func))
+        self.refuse(node, f"Verilog has no {name}; write if and else" if name in ("max", "min", "abs") else
+                    f"Verilog has no {name}; write it out, or call it outside the process")  # fmt: skip
+
+    def _width(self, node: ast.Subscript, whole: int) -> int:
+        """Return the bits of a slice, whose bounds may depend on loops' variables."""
+        assert isinstance(node.slice, ast.Slice)
+        lower, upper = node.slice.lower, node.slice.upper
+        bounds = [self.constant(lower) if lower else whole, self.constant(upper) if upper else 0]
+        if None not in bounds:
+            return bounds[0] - bounds[1]
+        names = {one.id for bound in (lower, upper) if bound for one in ast.walk(bound) if isinstance(one, ast.Name)}
+        found = set()
+        for start in (101, 211, 997):
+            values = {name: start + 37 * place for place, name in enumerate(sorted(names))}
+            known = {name: self._tree.symdict.get(name) for name in names}
+            values |= {name: value for name, value in known.items() if isinstance(value, int)
+                       and name not in self._tree.vardict}  # fmt: skip
+            codes = [compile(ast.Expression(bound), "", "eval") if bound else None for bound in (lower, upper)]
+            try:
+                high, low = (eval(code, {"__builtins__": {}}, values) if code else None for code in codes)
+            except (NameError, TypeError):
+                break
+            found.add((whole if high is None else high) - (low or 0))
+        if len(found) != 1:
+            self.refuse(node, "the number of these bits must be constant; shift the signal, and take its lowest bits")
+        return found.pop()
+
+    def _place(self, node: ast.expr) -> str:
+        """Return the text of a name, or of bits of a signal or words of a memory."""
+        match node:
+            case ast.Attribute(value=inner, attr="next" | "val"):
+                return self._place(inner)
+            case ast.Name(id=name):
+                return self._name(node, name)
+            case ast.Subscript(slice=ast.Slice(lower=None, upper=None)):
+                return self._place(node.value)
+            case ast.Subscript(slice=ast.Slice(lower=lower, upper=upper)):
+                return self._bits(node, lower, upper)
+            case ast.Subscript(value=value, slice=index):
+                known = self._object(value)
+                if table_of(known) is not None:
+                    self.refuse(node, f"Verilog has no tables in expressions; assign {ast.unparse(node)} to a signal")
+                if isinstance(known, tuple):
+                    self.refuse(node, f"{ast.unparse(value)} is a tuple, of which Verilog has numbers only; "
+                                "use a list of signals, or if and elif")  # fmt: skip
+                around = self.range(index)
+                if around.low < 0:
+                    self.refuse(node, "the index may be below 0; give it a range without a sign")
+                if is_memory(known) or type(known).__name__ == "_Ram":
+                    return f"{self._place(value)}[{self.text(index)}]"
+                bits, _ = self._type(value)
+                constant = self.constant(index)
+                text = self._bit(value, index)
+                # Beyond the highest bit MyHDL reads zeros, or the sign, and refuses to write.
+                if around.high < bits or (constant is None and isinstance(node.ctx, ast.Store)):
+                    return text
+                if constant is not None:
+                    self.refuse(node, f"bit {constant} is beyond the highest bit, {bits - 1}; correct the index")
+                if self._type(value)[1]:
+                    self.refuse(node, f"the index may be {around.high}, and the highest bit is {bits - 1}; give it a "
+                                f"range, such as intbv(0, min=0, max={bits})")  # fmt: skip
+                return f"({self._root(index, None)} < {bits} && {text})"
+        return self._operand(node)
+
+    def _bit(self, value: ast.expr, index: ast.expr) -> str:
+        constant, (text, offset) = self.constant(index), self._base(value)
+        place = self.text(index) if constant is None else str(constant + offset)
+        return f"{text}[{place}{f' + {offset}' if offset and constant is None else ''}]"
+
+    def _bits(self, node: ast.Subscript, lower: ast.expr | None, upper: ast.expr | None) -> str:
+        if isinstance(node.value, ast.Call) and (_called(node.value) is intbv or _is_modbv(_called(node.value))):
+            value = self.constant(node.value.args[0])
+            if value is not None and (bits := self._width(node, 0)):
+                return f"{bits}'h{value % (1 << bits):x}"
+        bits, signed = self._type(node.value)
+        if lower is None and signed:
+            assert upper is not None
+            return f"({self._place(node.value)} >>> {self.text(upper)})"
+        text, offset = self._base(node.value)
+        low = self.constant(upper) if upper else 0
+        width = self._width(node, bits)
+        if low is None and upper:
+            text_of_low = self.text(upper)
+            return f"{text}[{text_of_low}{f' + {offset}' * bool(offset)} +: {width}]"
+        high = low + offset + width - 1
+        if width < 1 or low + width > bits:
+            self.refuse(node, f"bits {low + width - 1} to {low} are not all within 0 to {bits - 1}; correct the bounds")
+        return f"{text}[{high}:{low + offset}]"
+
+    def _base(self, node: ast.expr) -> tuple[str, int]:
+        """Return the text of what bits are taken from, and the place of its lowest bit there."""
+        match node:
+            case ast.Subscript(slice=ast.Slice(lower=None, upper=None)):
+                return self._base(node.value)
+            case ast.Subscript(slice=ast.Slice(upper=upper)) if self._type(node.value)[1] is False or node.slice.lower:
+                low = self.constant(upper) if upper else 0
+                if low is not None and not isinstance(node.value, ast.Call):
+                    text, offset = self._base(node.value)
+                    return text, offset + low
+            case ast.Subscript() if is_memory(self._object(node.value)):
+                return self._place(node), 0
+            case ast.Attribute(value=inner, attr="next" | "val"):
+                return self._base(inner)
+            case ast.Name():
+                known = self._object(node)
+                text = self._place(node)
+                if re.fullmatch(r"[\w.]+(\[\d+\])?", text) and not re.search(r"\[\d+\]$", text):
+                    return text, 0
+                if isinstance(known, SliceSignal):
+                    found = re.fullmatch(r"(.*)\[(?:\d+:)?(\d+)\]", text)
+                    if found:
+                        return found[1], int(found[2])
+                if not isinstance(known, ShadowSignal):
+                    return text, 0
+        self.refuse(node, "Verilog has no bits of an expression; assign it to a signal, and take its bits")
+
+    def _name(self, node: ast.expr, name: str) -> str:
+        tree = self._tree
+        known = tree.symdict.get(name)
+        if name in tree.argnames or (
+            name in tree.vardict and (name not in tree.nonlocaldict or name in internals.state_of(tree))
+        ):
+            return name
+        if isinstance(known, SignalType):
+            return str(known)
+        if is_memory(known):
+            return is_memory(known)
+        if isinstance(known, EnumItemType):
+            return known._toVerilog()
+        if type(known) is intbv:
+            self.refuse(node, f"{name} is an intbv of no process, so Verilog has no value for it; use tied()")
+        self.refuse(node, f"{name} has no value in Verilog; use a number, a signal or a list of signals")
+
+
+def _known(node: Any) -> Any:
+    return getattr(node, "obj", None)
+
+
+def _called(node: ast.expr) -> Any:
+    """Return the function that a call calls."""
+    return _known(node.func) if isinstance(node, ast.Call) else None
+
+
+def _is_modbv(function: Any) -> bool:
+    return isinstance(function, type) and issubclass(function, intbv)
+
+
+def _is_integer(known: Any) -> bool:
+    return isinstance(known, int) and not isinstance(known, bool)
+
+
+def _either(one: Range, other: Range) -> Range:
+    """Return a range that contains two others."""
+    return Range(min(one.low, other.low), max(one.high, other.high))
+
+
+def _shape(known: Any) -> tuple[int, bool]:
+    """Return the bits and the sign of a signal, or of a value of a variable's type."""
+    known = known.val if isinstance(known, SignalType) else known
+    if isinstance(known, intbv):
+        return len(known), (known.min or 0) < 0
+    if isinstance(known, EnumItemType):
+        return len(next(iter(internals.states_of(known).values()))), False
+    return (INTEGER_BITS, True) if _is_integer(known) else (1, False)
+
+
+def _all_of(known: Any) -> Range:
+    bits, signed = _shape(known)
+    return Range(-(1 << bits - 1), (1 << bits - 1) - 1) if signed else Range(0, (1 << bits) - 1)
+
+
+def _words(op: ast.AST) -> str:
+    return {ast.In: "in", ast.NotIn: "not in", ast.Is: "is", ast.IsNot: "is not"}.get(type(op), "such comparison")
+
+
+def _is_one_group(text: str) -> bool:
+    """Return True if the last parenthesis closes the first."""
+    depth = 0
+    for index, character in enumerate(text):
+        depth += (character == "(") - (character == ")")
+        if depth == 0:
+            return index == len(text) - 1 and text[0] == "("
+    return False
