@@ -2,7 +2,7 @@
 """`raycaster bitstream`: make a bitstream for a board, using only tools from pip.
 
 The board's video output shows one scene, whose camera the buttons move, or the game, played with the buttons. No
-bitstream has run on a board; instead, the DVI output is decoded in simulation, and every pixel is compared with the
+bitstream has run on a board; instead, the video output is decoded in simulation, and every pixel is compared with the
 golden model.
 """
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The DVI output of a board's simulated top."""
+"""The video output of a board's simulated top."""

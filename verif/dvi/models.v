@@ -193,7 +193,7 @@ module rPLL #(
     assign CLKOUT = CLKOUT_BYPASS == "true" ? CLKIN : divided;
 endmodule
 
-// Divides HCLKIN by two or by five.
+// Divides HCLKIN by two or by five; low while RESETN is low.
 module CLKDIV #(
     parameter DIV_MODE = "2"
 ) (
@@ -203,11 +203,15 @@ module CLKDIV #(
     localparam integer HALVES = DIV_MODE == "5" ? 5 : 2;
     integer count = 0;
 
-    always @(HCLKIN) begin
-        count = count == HALVES - 1 ? 0 : count + 1;
-        if (count == 0)
-            CLKOUT = ~CLKOUT;
-    end
+    always @(HCLKIN)
+        if (!RESETN) begin
+            count = 0;
+            CLKOUT = 1'b0;
+        end else begin
+            count = count == HALVES - 1 ? 0 : count + 1;
+            if (count == 0)
+                CLKOUT = ~CLKOUT;
+        end
 endmodule
 
 module ODDR (
