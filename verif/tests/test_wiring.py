@@ -45,13 +45,11 @@ endmodule
 
 ENCODER = """
 module dvi_encoder (
-    input wire clk, ready, pixel_end, vga_hs, vga_vs, vga_blank_n, input wire [7:0] vga_r, vga_g, vga_b,
+    input wire clk, pixel_end, vga_hs, vga_vs, vga_blank_n, input wire [7:0] vga_r, vga_g, vga_b,
     output reg [9:0] blue, green, red, output reg pixel = 1'b0
 );
     always @(posedge clk)
-        if (!ready)
-            pixel <= 1'b0;
-        else if (pixel_end) begin
+        if (pixel_end) begin
             pixel <= ~pixel;
             blue <= {vga_vs, vga_hs, vga_b};
             green <= {2'b01, vga_g};
@@ -296,7 +294,7 @@ ICE, GAME, ULX3S, TANG, DE2, LITE = (
 FAULTS = [
     (ULX3S, "dvi_board.v", "locked & run", "locked"),
     (ULX3S, "dvi_board.v", "locked & run", "1'b0"),
-    (ULX3S, "dvi_board.v", ".ready(ready),\n    .buttons", ".ready(run),\n    .buttons"),
+    (ULX3S, "dvi_board.v", "locked & run", "run"),
     (ULX3S, "dvi_board.v", ".vga_blank_n(vga_blank_n),\n    .blue", ".vga_blank_n(vga_vs),\n    .blue"),
     (ULX3S, "dvi_board.v", "(pixel_end),\n    .vga_r(vga_r),\n    .vga_g(vga_g)",
      "(pixel_end),\n    .vga_r(vga_g),\n    .vga_g(vga_r)"),
