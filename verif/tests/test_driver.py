@@ -374,10 +374,12 @@ def check_access(directory: Path, nios: bool, *flags: str, driver: Path = SOFTWA
     for name in ("id", "version"):
         memory[MAP[name].address] = MAP[name].reset ^ seen_as
     memory[MAP["size"].address] = MAP["size"].pack(units=4, rectangles=12, rows=240) ^ seen_as
+    memory[MAP["status"].address] = MAP["status"].pack(frame=777, busy=1) ^ seen_as
     before = list(memory)
     device = RayCaster()
     assert library.raycaster_probe(device, memory) == Error.OK
     assert (device.units, device.rectangles, device.rows) == (4, 12, 240)
+    assert members(library.raycaster_get_status(device)) == (777, True, False, False)
     assert library.raycaster_set_camera(device, TYPES["raycaster_point"](1, 2, 3)) == Error.OK
     changed = {address: word ^ seen_as for address, word in enumerate(memory) if word != before[address]}
     assert changed == {MAP["camera"].address: MAP["camera"].pack(x=1, y=2, z=3)}

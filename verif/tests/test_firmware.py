@@ -116,8 +116,9 @@ def test_the_memory_map_for_c_is_up_to_date():
 
 
 def test_the_demo_is_played_as_on_the_host(firmware, tmp_path):
-    script = load(DEMO)[:430]
-    machine = Machine(firmware.words, script)
+    script, registers = load(DEMO)[:430], Registers(CONFIG)
+    machine = Machine(firmware.words, script, registers)
+    assert (registers.file.live.run, registers.file.live.reflections) == (True, 1)
     version = MAP["version"].fields
     assert machine.said.splitlines() == [
         f"RayCaster {version['major'].reset}.{version['minor'].reset}, engine exact, units {CONFIG.units}, "
