@@ -39,6 +39,8 @@ DESIGNS = {
 """Simulator, design and scene."""
 
 SMALL = {bus: replace(TINY["seed"], bus=bus) for bus in (OWN, *BRIDGED)}
+STARTED = {**SMALL, "exact": TINY["exact"], "beam": TINY["beam"]}
+"""Designs that start with random registers, by bus or engine."""
 BUS_BENCH, TRAFFIC_BENCH = "verif.benches.bus_bench", "verif.benches.traffic_bench"
 GATED = {"CLOCK_GATING": 1}
 """Makes clocks rest in Icarus, as they do in Verilator's models; see `clock_gate`."""
@@ -201,13 +203,13 @@ def random_values(start: int) -> tuple[str, str]:
     return "+verilator+rand+reset+2", f"+verilator+seed+{start}"
 
 
-@pytest.mark.slow_sets(quick=["avalon-1", "axi4lite-1"])
+@pytest.mark.slow_sets(quick=["avalon-1", "axi4lite-1", "beam-1", "exact-1"])
 @pytest.mark.parametrize(
-    ("bus", "start"), [(bus, start) for bus in SMALL for start in ((1, 2, 3, 4) if bus == OWN else (1, 2))]
+    ("design", "start"), [(name, start) for name in STARTED for start in ((1, 2) if name in BRIDGED else (1, 2, 3, 4))]
 )
-def test_random_start(bench: Bench, bus, start):
+def test_random_start(bench: Bench, design, start):
     """Registers and memories start with random values, which have no effect after reset."""
-    bench("sim.frame_bench", SMALL[bus], "verilator", SMALL_SCENE, plusargs=random_values(start))
+    bench("sim.frame_bench", STARTED[design], "verilator", SMALL_SCENE, plusargs=random_values(start))
 
 
 def test_the_start_is_random(noticed: Noticed):
