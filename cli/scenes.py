@@ -5,9 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from raycaster.engines import ENGINES
+from raycaster.engines.engine import LOOK_NAMES
 from raycaster.options import CommandParser
 from raycaster.output import Console, Table
 from raycaster.scene import load_scene, packaged_scenes
+
+MARKS = {"materials": "mirrors"}
+"""Words for options whose names say less."""
 
 
 def command_parser() -> CommandParser:
@@ -18,8 +23,13 @@ def command_parser() -> CommandParser:
 def main(argv: Sequence[str] | None = None) -> None:
     """Run the command."""
     command_parser().parse_args(argv)
-    table = Table("scene", "title", "rows", "reflections", "rectangles", texts=("title",))
+    table = Table("scene", "rows", "reflections", "rectangles", "needs", texts=("needs",))
     for name, path in packaged_scenes().items():
         scene = load_scene(path)
-        table.add_row(name, scene.title, scene.rows, scene.reflections, len(scene.rect))
-    Console().print(table)
+        needs = ", ".join(MARKS.get(look, look) for look in scene.lacks(()))
+        table.add_row(name, scene.rows, scene.reflections, len(scene.rect), needs)
+    console = Console()
+    console.print(table)
+    for look, what in LOOK_NAMES.items():
+        engines = ", ".join(each.name for each in ENGINES.values() if look in each.looks)
+        console.print(f"{MARKS.get(look, look)}: {what}; engines: {engines}", style="dim")

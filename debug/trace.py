@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from rich.text import Text
 
+from raycaster.complaints import as_typed
 from raycaster.configuration import CHANNEL_BITS
 from raycaster.debug.probes.engines import description_of
 from raycaster.debug.probes.ray import Number, Place, Probe, Ray, Reading, Value, channels_of, first_difference, read
@@ -183,7 +184,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
     if arguments.pixel is None:
-        raise UserError("pixel: expected a ray's column and row, as in PIXEL=160,120, got none")
+        raise UserError(f"pixel: expected a ray's column and row, as in {as_typed('pixel', '160,120')}, got none")
     column, row = pixel_place(arguments.pixel)
     console = Console()
     design = design_for(arguments.scene, given_options(arguments))

@@ -12,8 +12,8 @@ from systemrdl.node import FieldNode, Node, RegNode
 
 from raycaster.configuration import OPTIONS, configure
 from raycaster.docs.timing import CONFIGURATION, DIAGRAMS, kept, measured
-from raycaster.engines import beam, exact
-from raycaster.engines.engine import SETUP_LATENCY
+from raycaster.engines import ENGINES, beam, exact
+from raycaster.engines.engine import LOOK_NAMES, SETUP_LATENCY, Engine
 from raycaster.outcomes import table
 from raycaster.registers import compile_registers
 from raycaster.rtl.common.widths import exact_slope_bits
@@ -30,6 +30,26 @@ def options() -> str:
 
     rows = ([f"`{name.upper()}`", OPTIONS[name].description, default(OPTIONS[name])] for name in OPTIONS)
     return table(["option", "meaning", "default"], rows)
+
+
+def offers() -> str:
+    """Table of the features and the screens of each engine, as it states them."""
+    engines = ENGINES.values()
+
+    def cell(engine: Engine, place: tuple[str, int]) -> str:
+        scales = sorted(engine.scales(engine.screens[place])) if place in engine.screens else []
+        return f"scales {', '.join(map(str, scales))}" if len(scales) > 1 else "yes" * len(scales)
+
+    rows = [[what, f"`{look.upper()}=1`", *("yes" if look in one.looks else "" for one in engines)]
+            for look, what in LOOK_NAMES.items()]  # fmt: skip
+    rows.append(["2 pixels per clock", "`PIXELS=2`", *("" if one.line_buffered else "yes" for one in engines)])
+    rows.append(["fraction bits, rounding", "`FRACTION_BITS=`", *("yes" if one.divides else "" for one in engines)])
+    screens = {place: screen for one in engines for place, screen in one.screens.items()}
+    for (name, count), screen in sorted(screens.items(), key=lambda one: (one[0][0] != "vga", one[0])):
+        size = f"{screen.horizontal.visible}x{screen.vertical.visible}"
+        chosen = f"`ROWS={count}`" if name == "vga" else f"`SCREEN={name}`"
+        rows.append([f"monitor with {size}", chosen, *(cell(one, (name, count)) for one in engines)])
+    return table(["", "option", *ENGINES], rows)
 
 
 def seed_cycles() -> str:
@@ -166,6 +186,7 @@ def facts() -> dict[str, str]:
     default = configure()
     return {
         "options": options(),
+        "offers": offers(),
         "seed_cycles": seed_cycles(),
         "seed_steps": seed_steps(),
         "exact_cycles": exact_cycles(light=False),

@@ -22,6 +22,7 @@ from filelock import FileLock
 from raycaster.buses import BUSES, OWN
 from raycaster.cli.__main__ import loaded
 from raycaster.cli.commands import COMMANDS
+from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration
 from raycaster.convert.provenance import ROOT, Provenance, verilog_digest
 from raycaster.digests import code_digest, tool_versions
@@ -114,7 +115,9 @@ def _shown(published: Published) -> str:
     for pattern in published.kept:
         found = [one for name, one in outcomes().items() if fnmatch(name, pattern)]
         if not found:
-            raise UserError(f"{published.name}: {RESULTS / pattern}.json is missing; a command with --keep writes it")
+            raise UserError(
+                f"{published.name}: {RESULTS / pattern}.json is missing; a command with {as_typed('keep')} writes it"
+            )
         kept += found
     body = published.body(*kept)
     return body if published.dated else f"{body}\n\n{_measured(kept)}"

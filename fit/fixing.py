@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from raycaster.complaints import as_typed
 from raycaster.configuration import COORDINATE_BITS, LOOKS, MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
@@ -82,7 +83,8 @@ def design_of(path: Path, options: Mapping[str, Any], scope: str | None, console
     if scope == FIT:
         if options:
             raise UserError(
-                f"{min(options)}: FIT uses the options chosen for the scene; leave {min(options).upper()} out"
+                f"{min(options)}: {as_typed('fit')} uses the options chosen for the scene; leave out "
+                f"{as_typed(min(options))}"
             )
         chosen, scope = kept_choice(path)
         chosen = defaults | chosen
@@ -102,9 +104,10 @@ def configuration_of(
     if scope is None and path is None:
         return configure(**options)
     if path is None:
-        raise UserError("fix: needs a scene to build in; name one with SCENE=path")
+        raise UserError("fix: needs a scene to build in; name one, such as examples/two_boxes.toml")
     if scope is None:
-        raise UserError(f"scene: the hardware shows any; to build {path} in, give FIX={' or FIX='.join(SCOPES)}")
+        ways = " or ".join(as_typed("fix", one) for one in SCOPES)
+        raise UserError(f"scene: the hardware shows any; to build {path} in, give {ways}")
     return design_of(path, options, scope, console).configuration
 
 
@@ -122,7 +125,7 @@ def fix(path: Path, options: Mapping[str, Any], scope: str) -> Fixing:
     if scope not in SCOPES:
         raise UserError(f"fix: expected {' or '.join(SCOPES)}, got {scope}")
     if "rectangles" in options:
-        raise UserError("rectangles: FIX takes the number from the scene; leave RECTANGLES out")
+        raise UserError(f"rectangles: a fixed scene has its own number; leave out {as_typed('rectangles')}")
     general = general_design(path, options)
     scene, reflections = general.scene, general.reflections
     reasons = _reasons(general, scope)

@@ -23,6 +23,7 @@ from tempfile import TemporaryDirectory
 
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
+from raycaster.complaints import as_typed
 from raycaster.configuration import CHANNEL_BITS, Configuration, configure
 from raycaster.convert.provenance import Provenance, files_digest
 from raycaster.convert.write import write_dvi_encoder, write_scene_system, write_system
@@ -338,7 +339,9 @@ def _design(arguments: argparse.Namespace, board: OpenBoard, console: Console) -
         scene = arguments.scene or find_scene("mirror_room")
         return design_of(scene, options, arguments.fix, console, **board.configuration)
     if arguments.scene or arguments.fix:
-        raise UserError("game: the game sets up its own scene; leave out SCENE, FIX and FIT")
+        raise UserError(
+            f"game: the game sets up its own scene; leave out the scene, {as_typed('fix')} and {as_typed('fit')}"
+        )
     configuration = configure(**{"engine": GAME_ENGINE} | board.configuration | options)
     return ProcessorDesign(build_firmware(arguments.output.absolute() / "firmware").words, configuration)
 
@@ -400,6 +403,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     figures |= {name: getattr(design.configuration, name) for name in ("rectangles", "rows", "units", "reflections")}
     keep(arguments, figures, scope_of(design.configuration), provenance, left_out="a run on the board")
     if outcome.missed:
-        raise UserError(f"too slow: {', '.join(outcome.missed)}; the reports are in {output}; another SEED may help")
+        raise UserError(
+            f"too slow: {', '.join(outcome.missed)}; the reports are in {output}; another {as_typed('seed')} may help"
+        )
     console.print(f"{made}, {made.stat().st_size:,} bytes: {design.configuration.name} with {design.path}")
     console.print(f"{LOADER} {' '.join(board.loader)} {made}", soft_wrap=True)

@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration
 from raycaster.convert.provenance import Provenance
 from raycaster.design import Design, packaged_for
@@ -270,5 +271,6 @@ def _check_rate(path: Path, options: Mapping[str, Any], wanted: int) -> None:
     rate = round(screen.pixel_hz / (screen.horizontal.total * screen.vertical.total))
     if rate < wanted:
         raise UserError(
-            f"fps: {path}: {config.rows} rows are shown at {rate} frames per second, not {wanted}; choose other ROWS"
+            f"fps: {path}: {config.rows} rows are shown at {rate} frames per second, not {wanted}; choose other "
+            f"{as_typed('rows')}"
         )

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from subprocess import CompletedProcess, TimeoutExpired
 
+from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration
 from raycaster.errors import UserError
 from raycaster.fpga.board import OpenBoard
@@ -91,11 +92,14 @@ def clocks_for(board: OpenBoard, config: Configuration) -> Clocks:
     """
     screen = config.screen_geometry
     if config.pixels > 1:
-        raise UserError("pixels: the board's link sends one pixel per clock; leave out PIXELS=2, or use make verilog")
+        raise UserError(f"pixels: the board's link sends one pixel per clock; leave out {as_typed('pixels', 2)}")
     if config.screen == "play":
         raise UserError(f"screen: {config.screen} is for simulation only; leave it out, or choose vga")
     if board.video == "parallel" and screen.clocks_per_pixel > 1:
-        raise UserError(f"rows: the {board.title} takes one clock per pixel; choose ROWS=120, 96 or 60, or ENGINE=beam")
+        raise UserError(
+            f"rows: the {board.title} takes one clock per pixel; choose {as_typed('rows', 120)}, 96 or 60, or "
+            f"{as_typed('engine', 'beam')}"
+        )
     pixel_mhz = screen.monitor_hz / 1e6
     # Ten bits per pixel, two per cycle.
     shifts = 5 if board.video == "dvi" else 1

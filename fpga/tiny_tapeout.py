@@ -14,6 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration
 from raycaster.convert.provenance import Provenance
 from raycaster.convert.write import write_verilog
@@ -104,7 +105,8 @@ def check(config: Configuration) -> None:
     screen = config.screen_geometry
     if screen.clocks_per_pixel != 1 or config.pixels != 1:
         raise UserError(
-            "rows: a Tiny Tapeout project shows one pixel per clock; choose ROWS=120, 96 or 60, or ENGINE=beam"
+            f"rows: a Tiny Tapeout project shows one pixel per clock; choose {as_typed('rows', 120)}, 96 or 60, or "
+            f"{as_typed('engine', 'beam')}"
         )
     if config.colour_bits != CHANNEL_PINS:
         raise UserError(f"colour_bits: the Pmod has {CHANNEL_PINS} pins per colour, not {config.colour_bits}")

@@ -4,13 +4,41 @@
 from __future__ import annotations
 
 import difflib
+import os
 import re
 import reprlib
+import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
+
+
+FROM_MAKE = "RAYCASTER_FROM_MAKE"
+"""Environment variable with which the Makefile says that the user typed `make`."""
+
+SHORT_NAMES = {"sim": "simulator"}
+"""Options with another name as a make variable, by that name."""
+
+
+def from_make() -> bool:
+    """Return True if the user typed `make`, not the program's name."""
+    return bool(os.environ.get(FROM_MAKE))
+
+
+def as_typed(option: str, value: object = None) -> str:
+    """Return an option as the user types it: `ENGINE=beam` for make, `--engine beam` for the program.
+
+    Args:
+        option: name of the option, as in `fraction_bits`.
+        value: its value; True for a switch, None for the option alone.
+    """
+    if from_make():
+        name = next((short for short, long in SHORT_NAMES.items() if long == option), option).upper()
+        return name if value is None else f"{name}={shlex.quote(str(int(value) if isinstance(value, bool) else value))}"
+    name = "--" + SHORT_NAMES.get(option, option).replace("_", "-")
+    return name if value is None or value is True else f"{name} {shlex.quote(str(value))}"
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:

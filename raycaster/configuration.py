@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -14,9 +14,9 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticKnownError
 
 from raycaster.buses import BUSES, OWN
-from raycaster.complaints import refusal
+from raycaster.complaints import as_typed, refusal
 from raycaster.engines import ENGINES, SEED, Engine
-from raycaster.engines.engine import LOOKS
+from raycaster.engines.engine import LOOK_NAMES, LOOKS
 from raycaster.errors import UserError, listed
 from raycaster.fixed import FixedScene
 from raycaster.screens import COORDINATE_BITS, Screen
@@ -68,7 +68,10 @@ class Options:
     Raises pydantic's `ValidationError`.
     """
 
-    engine: EngineName = Field(SEED.name, description=f"engine that computes the rays: {listed(ENGINES)}")
+    engine: EngineName = Field(
+        SEED.name,
+        description=f"engine that computes the rays: {listed(ENGINES)}; by default exact for a scene that needs it",
+    )
     units: Whole | None = Field(
         None,
         ge=1,
@@ -85,7 +88,7 @@ class Options:
     rows: Whole | None = Field(
         None,
         description="rows of rays: 240 (640x480@60), 200 (640x400@70); seed and exact: 120, 96 or 60 (640x480@60 at "
-        "half the clock); beam: 180 (1280x720@60, or 1920x1080 with SCALE=3 or 6)",
+        "half the clock); beam: 180 (1280x720@60, or 1920x1080 at scale 3 or 6)",
     )
     scale: Whole | None = Field(
         None,
@@ -301,8 +304,9 @@ def decided(options: Options) -> Configuration:
     scale = _scale(options, engine, rows)
     for look, reason in engine.lacks.items():
         if getattr(options, look):
-            others = " or ".join(f"ENGINE={other.name}" for other in ENGINES.values() if look not in other.lacks)
-            raise ValueError(f"{look}: {reason}; choose {others}")
+            raise ValueError(f"{look}: {reason}; {_instead(options)}")
+    if options.pixels > 1 and engine.line_buffered:
+        raise ValueError(f"pixels: the {engine.name} engine has 1 per clock, not {options.pixels}; {_instead(options)}")
     engine.refuse(options)
     config = Configuration(
         engine=options.engine,
@@ -335,17 +339,43 @@ def decided(options: Options) -> Configuration:
     return config
 
 
+def _lacking(engine: Engine, options: Options) -> Iterator[str]:
+    """Yield the wanted features and the screen, in words, that an engine does not have."""
+    yield from (name for look, name in LOOK_NAMES.items() if getattr(options, look) and look in engine.lacks)
+    if options.pixels > 1 and engine.line_buffered:
+        yield f"{options.pixels} pixels per clock"
+    screens = [screen for place, screen in engine.screens.items() if _matches(place, options)]
+    if not screens:
+        yield f"the {options.screen} screen" if options.rows is None else f"{options.rows} rows of {options.screen}"
+    elif options.scale is not None and all(options.scale not in engine.scales(screen) for screen in screens):
+        yield f"scale {options.scale}"
+
+
+def _matches(place: tuple[str, int], options: Options) -> bool:
+    return place[0] == options.screen and options.rows in (None, place[1])
+
+
+def _instead(options: Options) -> str:
+    """Return the engines with all that is wanted or, if there are none, what each of them lacks."""
+    lacking = {name: list(_lacking(engine, options)) for name, engine in ENGINES.items()}
+    able = [as_typed("engine", name) for name, lacks in lacking.items() if not lacks]
+    if able:
+        return f"choose {' or '.join(able)}"
+    lacks = ", ".join(f"{name} lacks {' and '.join(lacks)}" for name, lacks in lacking.items())
+    return f"no engine has all of it: {lacks}; leave something out"
+
+
 def _rows(options: Options, engine: Engine) -> int:
     allowed = [rows for screen, rows in engine.screens if screen == options.screen]
     if not allowed:
-        raise ValueError(f"screen: {options.screen} needs the beam engine, ENGINE=beam, not {engine.name}")
+        raise ValueError(f"screen: the {engine.name} engine does not have {options.screen}; {_instead(options)}")
     if options.rows is None:
         return allowed[0]
     if options.rows not in allowed:
-        choices = " or ".join(map(str, allowed))
-        other = next((one for one in ENGINES.values() if (options.screen, options.rows) in one.screens), None)
-        hint = f"; {options.rows} rows need the {other.name} engine, ENGINE={other.name}" if other else ""
-        raise ValueError(f"rows: the {options.screen} screen has {choices} rows, not {options.rows}{hint}")
+        choices = ", ".join(map(str, allowed))
+        known = any(_matches(place, options) for other in ENGINES.values() for place in other.screens)
+        hint = f"; {_instead(options)}" if known else ""
+        raise ValueError(f"rows: {engine.name} has {choices} rows on screen {options.screen}, not {options.rows}{hint}")
     return options.rows
 
 
@@ -355,7 +385,9 @@ def _scale(options: Options, engine: Engine, rows: int) -> int:
         return allowed[0]
     if options.scale not in allowed:
         scales = " or ".join(map(str, sorted(allowed)))
-        hint = "; scales need the beam engine, ENGINE=beam" if engine.line_buffered else ""
+        others = (other for other in ENGINES.values() if (options.screen, rows) in other.screens)
+        known = any(options.scale in other.scales(other.screens[options.screen, rows]) for other in others)
+        hint = f"; {_instead(options)}" if known else ""
         raise ValueError(f"scale: the {engine.name} engine shows {rows} rows at {scales}, not {options.scale}{hint}")
     return options.scale
 

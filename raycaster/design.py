@@ -3,23 +3,18 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration, ConfigurationError, configure
 from raycaster.engines import ENGINES, EXACT, SEED
+from raycaster.engines.engine import LOOK_NAMES
 from raycaster.errors import UserError
 from raycaster.scene import Scene, load_scene, packaged_scenes
-
-NEEDED_FOR = {
-    "turn": "a camera that turns",
-    "materials": "rectangles that mirror more or less than half",
-    "patterns": "rectangles with patterns",
-    "light": "a light",
-}
-"""Scene features, by the configuration option that they need."""
 
 
 @dataclass(frozen=True)
@@ -54,14 +49,21 @@ class ProcessorDesign:
 
 def packaged_for(options: Mapping[str, Any]) -> list[Path]:
     """List the packaged scenes that hardware with these options can show."""
-    lacking = {name for name in NEEDED_FOR if str(options.get(name)) in ("0", "False")}
-    engine = ENGINES.get(str(options.get("engine")))
-    lacking.update(engine.lacks if engine else ())
-    return [
-        path
-        for path in packaged_scenes().values()
-        if not any(needed and name in lacking for name, needed in load_scene(path).needs.items())
-    ]
+    others = [name for names in left_out(options).values() for name in names]
+    return [path for name, path in packaged_scenes().items() if name not in others]
+
+
+def left_out(options: Mapping[str, Any]) -> dict[str, list[str]]:
+    """Return the names of the packaged scenes that hardware with these options cannot show, by the reason."""
+    lacking = {look: f"needs {what}" for look, what in LOOK_NAMES.items() if str(options.get(look)) in ("0", "False")}
+    if engine := ENGINES.get(str(options.get("engine"))):
+        lacking |= {look: f"needs {LOOK_NAMES[look]}: {reason}" for look, reason in engine.lacks.items()}
+    found = defaultdict(list)
+    for name, path in packaged_scenes().items():
+        needs = load_scene(path).needs
+        if reason := next((reason for look, reason in lacking.items() if needs[look]), ""):
+            found[reason].append(name)
+    return found
 
 
 def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> Design:
@@ -80,9 +82,6 @@ def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, An
     scene = load_scene(path)
     chosen = {**(defaults or {}), **options}
     if "rows" not in chosen and chosen.get("screen", "vga") == "vga":
-        engine = ENGINES.get(chosen.get("engine", SEED.name))
-        if engine and ("vga", scene.rows) not in engine.screens:
-            raise UserError(f"{path}: rows: 180 rows need the beam engine; give ENGINE=beam, or ROWS=240 or 200")
         chosen["rows"] = scene.rows
     chosen.setdefault("reflections", scene.reflections)
     needed = scene.lacks(())
@@ -92,13 +91,13 @@ def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, An
         configuration = configure(**dict.fromkeys(needed, True) | chosen)
     except ConfigurationError as error:
         option, _, reason = str(error).partition(": ")
-        if option not in needed or option in chosen:
+        if option in options or option not in (*needed, "rows"):
             raise
         if option == "turn":
             option = "camera." + next(name for name in ("yaw", "pitch", "roll") if getattr(scene.camera, name))
         raise ConfigurationError(f"{path}: {option}: {reason}") from None
     if lacking := scene.lacks(configuration.looks):
-        raise UserError(f"{path}: the scene needs {NEEDED_FOR[lacking[0]]}; leave {lacking[0].upper()} out")
+        raise UserError(f"{path}: the scene needs {LOOK_NAMES[lacking[0]]}; leave out {as_typed(lacking[0])}")
     load_scene(path, configuration.rectangles)  # refuses more rectangles than the hardware holds
     # Use the hardware's number if it was given; a default design may compute more than the scene needs.
     reflections = configuration.reflections if "reflections" in options else scene.reflections

@@ -18,7 +18,7 @@ from typing import Any, NoReturn
 
 from pydantic.fields import FieldInfo
 
-from raycaster.complaints import did_you_mean
+from raycaster.complaints import FROM_MAKE, SHORT_NAMES, as_typed, did_you_mean, from_make
 from raycaster.configuration import OPTIONS, Configuration
 from raycaster.errors import UserError
 from raycaster.hdl.errors import fault_in_block
@@ -29,17 +29,11 @@ from raycaster.tools import ToolError
 BUILD = Path("build")
 """Default directory for all output."""
 
-SHORT_NAMES = {"sim": "simulator"}
-"""Options with another name as a make variable, by that name."""
-
 USUAL = ("engine", "rows", "reflections", "screen")
 """Configuration options in each command's help; `raycaster options` explains all."""
 
-FROM_MAKE = "RAYCASTER_FROM_MAKE"
-"""Environment variable with which the Makefile says that the user typed `make`."""
-
 TYPED = "1"
-"""Its value in the program that make itself has started."""
+"""Value of `FROM_MAKE` in the program that make itself has started."""
 
 
 _ELSEWHERE = "choose another place for the output"
@@ -115,7 +109,7 @@ class CommandParser(argparse.ArgumentParser):
         for name in ("SCENE", *map(_variable, self._option_string_actions)):
             value = os.environ.get(name)
             if value and not any(word.startswith(f"{name}=") for word in words):
-                target = f"make {self.name.split()[-1]}"
+                target = _target(self.name)
                 typed = " ".join([target, *map(shlex.quote, words), f"{name}={shlex.quote(value)}"])
                 raise UserError(
                     f"{name}={value} is in the environment, but {target} takes only what follows it; run {typed}, or "
@@ -148,7 +142,7 @@ class CommandParser(argparse.ArgumentParser):
         option = "--" + SHORT_NAMES.get(name, name).replace("_", "-")
         action = self._option_string_actions.get(option)
         if action is None:
-            taker = _target(self.name) if _from_make() else self.prog
+            taker = _target(self.name) if from_make() else self.prog
             near = did_you_mean(match[1], map(_variable, self._option_string_actions))
             raise UserError(f"{match[1]}: {taker} does not take it{near}; see {_program()} {self.name} --help")
         if action.nargs == 0:
@@ -174,10 +168,6 @@ def _variable(option: str) -> str:
     return next((variable for variable, long in SHORT_NAMES.items() if long == name), name).upper()
 
 
-def _from_make() -> bool:
-    return bool(os.environ.get(FROM_MAKE))
-
-
 def _target(name: str) -> str:
     """Return how make runs a subcommand."""
     return "make verify-all" if name == "verify all" else f"make {name.rsplit(maxsplit=1)[-1]}"
@@ -192,7 +182,7 @@ def outside_make() -> dict[str, str]:
 
 def _program() -> str:
     """Return the program's name as the user types it; make installs it below `.venv`."""
-    return ".venv/bin/raycaster" if _from_make() else "raycaster"
+    return ".venv/bin/raycaster" if from_make() else "raycaster"
 
 
 def command_line(name: str, scene: Path | str | None = None, options: Mapping[str, Any] | None = None) -> str:
@@ -209,17 +199,10 @@ def command_line(name: str, scene: Path | str | None = None, options: Mapping[st
         else value
         for option, value in (options or {}).items()
     }
-    given = {option: value for option, value in given.items() if value is not False}
-    if _from_make():
-        words = [f"SCENE={shlex.quote(str(scene))}"] if scene else []
-        values = {option: int(value) if isinstance(value, bool) else value for option, value in given.items()}
-        words += [f"{option.upper()}={shlex.quote(str(value))}" for option, value in values.items()]
-        return " ".join([_target(name), *words])
-    words = [shlex.quote(str(scene))] if scene else []
-    for option, value in given.items():
-        words.append("--" + SHORT_NAMES.get(option, option).replace("_", "-"))
-        words += [] if value is True else [shlex.quote(str(value))]
-    return " ".join(["raycaster", name, *words])
+    words = [as_typed(option, value) for option, value in given.items() if value is not False]
+    if from_make():
+        return " ".join([_target(name), *([as_typed("scene", scene)] if scene else []), *words])
+    return " ".join(["raycaster", name, *([shlex.quote(str(scene))] if scene else []), *words])
 
 
 def add_scene_argument(parser: argparse.ArgumentParser, what: str, *, many: bool = False, default: Any = None) -> None:

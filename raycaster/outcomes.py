@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
+from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration
 from raycaster.errors import UserError
 
@@ -168,7 +169,9 @@ def kept_outcome(path: Path) -> Outcome:
     try:
         kept: dict[str, Any] = json.loads(path.read_text())
     except OSError as error:
-        raise UserError(f"{path}: cannot be read: {error.strerror}; a command with --keep {path} writes it") from None
+        raise UserError(
+            f"{path}: cannot be read: {error.strerror}; a command with {as_typed('keep', path)} writes it"
+        ) from None
     kept = {"provenance": {}} | {name: kept[name] for name in kept if name != "tools"}
     kept["command"] = WHERE.sub("", kept["command"])
     return Outcome(path.stem, **kept)

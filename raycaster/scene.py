@@ -28,7 +28,7 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, ErrorDetails
 
-from raycaster.complaints import LONGEST_SHOWN, did_you_mean
+from raycaster.complaints import LONGEST_SHOWN, as_typed, did_you_mean
 from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, WORLD_SIZE
 from raycaster.errors import UserError, listed
 from raycaster.places import is_byte
@@ -62,7 +62,7 @@ COMPLAINTS = {
     "no_colour2": "a pattern has a second colour; give colour2 with {pattern}",
     "no_pattern": f"{{key}} is for a pattern; give pattern = {listed(map(json.dumps, PATTERNS[1:]))}",
     "too_many": (
-        "rect: {count} rectangles, but the hardware holds {rectangles}; remove some or build it with RECTANGLES={count}"
+        "rect: {count} rectangles, but the hardware holds {rectangles}; remove some or build it with {option}"
     ),
     "far_too_many": "rect: {count} rectangles, but no hardware holds more than {most}; remove some",
     "encoding": "is not UTF-8 text; a scene is a TOML file",
@@ -350,8 +350,11 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
     except ValidationError as error:
         raise SceneError(f"{path}: {_first_complaint(error, contents)}") from None
     if rectangles is not None and len(scene.rect) > rectangles:
+        option = as_typed("rectangles", len(scene.rect))
         kind = "too_many" if len(scene.rect) <= MOST_RECTANGLES else "far_too_many"
-        complaint = COMPLAINTS[kind].format(count=len(scene.rect), rectangles=rectangles, most=MOST_RECTANGLES)
+        complaint = COMPLAINTS[kind].format(
+            count=len(scene.rect), rectangles=rectangles, most=MOST_RECTANGLES, option=option
+        )
         raise SceneError(f"{path}: {complaint}")
     return scene
 

@@ -14,7 +14,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from raycaster.complaints import LONGEST_SHOWN
+from raycaster.complaints import LONGEST_SHOWN, as_typed
 from raycaster.configuration import LOOKS, MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.engines import SEED
@@ -215,7 +215,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Run the command."""
     arguments = command_parser().parse_args(argv)
     if arguments.keep and not arguments.measure:
-        raise UserError("keep: there is nothing to keep without --measure")
+        raise UserError(f"keep: there is nothing to keep without {as_typed('measure', True)}")
     console = Console()
     output = arguments.output or arguments.build / "web"
     try:

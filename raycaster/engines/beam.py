@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
+from raycaster.complaints import as_typed
 from raycaster.engines.engine import SETUP_LATENCY, SMALLEST_CELL_BITS, Engine
 from raycaster.screens import BEAM_SCREENS, COORDINATE_BITS, Screen
 
@@ -134,7 +135,7 @@ class Beam(Engine):
     screens = BEAM_SCREENS
     rect_latency = 2
     line_buffered = False
-    lacks: ClassVar = {"light": "the beam engine would need 93 more multipliers"}
+    lacks: ClassVar = {"light": "the beam engine casts no shadows, which would take more than twice its multipliers"}
 
     def scales(self, screen: Screen) -> tuple[int, ...]:
         """Return the scales for which the monitor has pixels; first the one with a ray per pixel."""
@@ -147,7 +148,8 @@ class Beam(Engine):
             raise ValueError("culling: the beam engine takes all rectangles at once; leave it out")
         if options.units not in (None, options.pixels):
             raise ValueError(
-                f"units: the beam engine has one per pixel of a clock, PIXELS={options.pixels}, not {options.units}"
+                f"units: the beam engine has one per pixel of a clock, {options.pixels} with "
+                f"{as_typed('pixels', options.pixels)}, not {options.units}"
             )
 
     def sized(self, config: Configuration, options: Options) -> Configuration:
@@ -183,7 +185,8 @@ class Beam(Engine):
             return
         turning = " and a camera that turns" if config.turn else ""
         paired = " at two pixels per clock" if config.pixels > 1 else ""
-        ways = ["take fewer of either", *(["TURN=0"] if turning else []), *(["PIXELS=1"] if paired else [])]
+        ways = ["take fewer of either", *([as_typed("turn", 0)] if turning else [])]
+        ways += [as_typed("pixels", 1)] if paired else []
         raise ValueError(
             f"rectangles: with {config.rectangles} of them, {config.reflections} reflections{turning}{paired}, the "
             f"beam engine is {-left} cycles short of a line's blanking on this screen; {' or '.join(ways)}"
@@ -196,7 +199,8 @@ class Beam(Engine):
         if screen.doubling != 1:
             finest = config.scale * screen.doubling
             raise ValueError(
-                f"pixels: 2 per clock need one column per pixel of the monitor, SCALE={finest}, not {config.scale}"
+                f"pixels: 2 per clock need one column per pixel of the monitor, {as_typed('scale', finest)}, not "
+                f"{config.scale}"
             )
         line = screen.horizontal
         if any(part % 2 for part in (line.visible, line.front, line.sync, line.back)):

@@ -8,13 +8,22 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
+from raycaster.complaints import as_typed
 from raycaster.screens import SCREENS, Screen
 
 if TYPE_CHECKING:
     from raycaster.configuration import Configuration, Options
 
 
-LOOKS = ("turn", "materials", "patterns", "light")
+LOOK_NAMES = {
+    "turn": "a camera that turns",
+    "materials": "rectangles that mirror more or less than half",
+    "patterns": "rectangles with patterns",
+    "light": "a light",
+}
+"""What the options for optional features of scenes are for."""
+
+LOOKS = tuple(LOOK_NAMES)
 """Options for optional features of scenes."""
 
 SMALLEST_CELL_BITS = 3
@@ -79,7 +88,8 @@ class Engine(ABC):
                     f"divider_bits: the {self.name} engine has no divider; leave out {options.divider_bits}"
                 )
         if options.culling and options.fixed is not None:
-            raise ValueError("culling: does not apply to a fixed scene; leave out CULLING or FIX")
+            either = f"{as_typed('culling')} or {as_typed('fix')}"
+            raise ValueError(f"culling: does not apply to a fixed scene; leave out {either}")
 
     def culls(self, options: Options) -> bool:
         """Return True if a design has culling by default."""
@@ -132,12 +142,6 @@ class LineBufferedEngine(Engine):
     GROUP_OVERHEAD: ClassVar[int] = 4
     """Fixed cycles per group: the write to the line buffer with the two-cycle reset, idling, ray generation."""
 
-    def refuse(self, options: Options) -> None:
-        """Refuse two pixels per clock."""
-        if options.pixels != 1:
-            raise ValueError(f"pixels: 2 per clock need the beam engine, ENGINE=beam, not {self.name}")
-        super().refuse(options)
-
     def group_cycles(self, config: Configuration) -> int:
         """Add the cycles for the rectangles of each pass, the latency of each pass, and the overhead of a group."""
         tests = sum(mask.bit_count() for mask in config.passes) * self.rect_cycles(config)
@@ -162,5 +166,5 @@ class LineBufferedEngine(Engine):
             f"{config.rectangles} rectangles, {config.reflections} reflections and {config.rect_cycles} cycles per "
             f"rectangle, but a row leaves it {config.group_budget} (less than {config.screen_geometry.row_cycles} "
             f"cycles over {config.groups} groups); take more units or divider bits, fewer rectangles, reflections or "
-            "fraction bits, or ALLOW_UNDERRUN=1"
+            f"fraction bits, or {as_typed('allow_underrun', True)}"
         )

@@ -71,7 +71,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = command_parser().parse_args(argv)
     for name in arguments.property or []:
         if name not in NAMES:
-            raise UserError(f"--property: got {name}, expected one of {', '.join(NAMES)}")
+            raise UserError(f"property: got {name}, expected one of {', '.join(NAMES)}")
     proofs = [
         proof
         for proof in PROOFS

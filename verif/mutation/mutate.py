@@ -572,7 +572,7 @@ def main(argv: list[str] | None = None) -> int:
     known = expectations()
     for module in arguments.module or []:
         if module not in known:
-            raise UserError(f"--module: got {module}, expected one of {', '.join(known)}")
+            raise UserError(f"module: got {module}, expected one of {', '.join(known)}")
     known = {module: known[module] for module in arguments.module or known}
     console = Console()
     with console.waiting("recording the leaf tests"):

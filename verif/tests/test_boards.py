@@ -85,7 +85,7 @@ def test_a_description_is_missing(tmp_path):
 @pytest.mark.parametrize(
     ("mhz", "options", "complaint"),
     [
-        (12, {}, "^rows: the .* takes one clock per pixel; choose ROWS=120, 96 or 60, or ENGINE=beam$"),
+        (12, {}, "^rows: the .* takes one clock per pixel; choose --rows 120, 96 or 60, or --engine beam$"),
         (12, {"engine": "beam", "screen": "play"}, "^screen: play is for simulation only"),
         (12, {"engine": "beam", "rows": 180, "scale": 6, "pixels": 2}, "^pixels: "),
         (9, {"engine": "exact", "rows": 60}, "^screen: the .* makes no pixel clock near 25.175 MHz; choose "),

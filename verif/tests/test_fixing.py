@@ -350,7 +350,7 @@ def test_a_choice_for_another_scene_is_refused(tmp_path, monkeypatch):
     keep_choice(scene, {"engine": "exact", "screen": "tiny"}, "rects")
     design = design_of(scene, {}, FIT, Console(quiet=True))
     assert design == fix(scene, {"engine": "exact", "screen": "tiny"}, "rects").design
-    with pytest.raises(UserError, match="leave UNITS out"):
+    with pytest.raises(UserError, match="leave out --units"):
         design_of(scene, {"units": "4"}, FIT, Console(quiet=True))
     (tmp_path / "build" / "fit" / "other.json").write_text("{")
     with pytest.raises(UserError, match="is not what the command fit wrote"):

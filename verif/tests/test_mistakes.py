@@ -13,13 +13,17 @@ from raycaster.sim.simulator import MODELS_VARIABLE
 
 OF_SCENES = [
     ("[camera", "", "is not TOML"),
-    ("rows = 180" + FLOOR_SCENE, "", "180 rows need the beam engine"),
+    (
+        "rows = 180" + FLOOR_SCENE,
+        "",
+        "mine.toml: rows: seed has 240, 200, 120, 96, 60 rows on screen vga, not 180; choose --engine ",
+    ),
     (FLOOR_SCENE + FLOOR_SCENE[FLOOR_SCENE.index("[[rect") :] * 12, "", "13 rectangles, but the hardware holds 12"),
     (TURNED_SCENE, "--engine seed", "the seed engine measures depth along x, so its camera cannot turn"),
     (TURNED_SCENE, "FIX=all ENGINE=seed", "the seed engine measures depth along x"),
-    (TURNED_SCENE, "TURN=0", "the scene needs a camera that turns; leave TURN out"),
+    (TURNED_SCENE, "TURN=0", "the scene needs a camera that turns; leave out --turn"),
     (FLOOR_SCENE + "mirror = 0", "MATERIALS=0", "the scene needs rectangles that mirror more or less than half"),
-    (PATTERNED_SCENE, "PATTERNS=0", "the scene needs rectangles with patterns; leave PATTERNS out"),
+    (PATTERNED_SCENE, "PATTERNS=0", "the scene needs rectangles with patterns; leave out --patterns"),
 ]
 """Text of a scene, options of `sim` and the complaint."""
 
@@ -49,7 +53,7 @@ OF_COMMANDS = {
         ("--gates mine.toml --cells xilinx", "cells: expected ecp5 or ice40 or gowin, got xilinx"),
     ],
     "trace": [
-        ("", "pixel: expected a ray's column and row, as in PIXEL=160,120, got none"),
+        ("", "pixel: expected a ray's column and row, as in --pixel 160,120, got none"),
         ("--pixel 48", "pixel: expected a ray's column and row, as in 160,120, got 48"),
         ("--pixel 3,-4", "a ray's column and row"),
         ("--pixel 64,9 --screen tiny", "pixel: expected column from 0 to 63 and row from 0 to 47, got 64,9"),
@@ -62,9 +66,9 @@ OF_COMMANDS = {
     ],
     "verilog": [
         ("boxes FIX=some", "fix: expected rects or all, got some"),
-        ("boxes FIX=all RECTANGLES=12", "leave RECTANGLES out"),
+        ("boxes FIX=all RECTANGLES=12", "leave out --rectangles"),
         ("FIX=all", "needs a scene"),
-        ("boxes", "give FIX=rects or FIX=all"),
+        ("boxes", "give --fix rects or --fix all"),
         ("nowhere.toml FIX=all", "nowhere.toml"),
         ("--output file", "file"),
         ("--output /proc/x", "/proc/x"),
@@ -91,8 +95,8 @@ OF_COMMANDS = {
     "bitstream": [
         ("--board ice40", "board: expected colorlight_i9, icebreaker, icepi_zero, "),
         ("nowhere.toml", "nowhere.toml: cannot be read"),
-        ("--game mine.toml", "game: the game sets up its own scene; leave out SCENE, FIX and FIT"),
-        ("--game --fix all", "game: the game sets up its own scene; leave out SCENE, FIX and FIT"),
+        ("--game mine.toml", "game: the game sets up its own scene; leave out the scene, --fix and --fit"),
+        ("--game --fix all", "game: the game sets up its own scene; leave out the scene, --fix and --fit"),
         ("--output file", "file"),
     ],
     "fit boxes": [
@@ -126,7 +130,7 @@ LATE = {
     "verify dvi": DVI,
     "verify soak": [("--build file", "file")],
     "tinytapeout boxes": [
-        ("--rows 240", "rows: a Tiny Tapeout project shows one pixel per clock; choose ROWS=120, 96 or 60, or "),
+        ("--rows 240", "rows: a Tiny Tapeout project shows one pixel per clock; choose --rows 120, 96 or 60, or "),
         ("--colour-bits 3", "colour_bits: the Pmod has 2 pins per colour, not 3"),
         ("--bus apb", "bus: the top drives the registers itself, by Avalon-MM; leave out apb"),
     ],

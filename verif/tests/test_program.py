@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import importlib.metadata
 import json
@@ -18,7 +19,9 @@ from conftest import ROOT, installed, make, refused, write_script
 from raycaster.cli import __main__ as program
 from raycaster.cli import completion
 from raycaster.cli.commands import COMMANDS, Command, overview, verify_overview
+from raycaster.design import design_for
 from raycaster.errors import UserError
+from raycaster.golden.engines import model_of
 from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.hierarchy import convert_hierarchy
 from raycaster.hdl.signals import bit
@@ -196,8 +199,50 @@ def test_make_gets_suggestions_and_complaints_in_its_form(tmp_path: Path, monkey
     monkeypatch.setenv(FROM_MAKE, "1")
     suggested = command_line("verify soak", "my scene.toml", {"pixel": "3,4", "stiff": True, "sim": "icarus"})
     assert suggested == "make soak SCENE='my scene.toml' PIXEL=3,4 STIFF=1 SIM=icarus"
+    (tmp_path / "boxes.toml").write_text((ROOT / "scenes/boxes.toml").read_text())
+    for words, option in (
+        ("verilog SCENE=boxes.toml", "give FIX=rects or FIX=all"),
+        ("trace SCENE=boxes.toml", "as in PIXEL=160,120, got none"),
+        ("sim SCENE=boxes.toml ROWS=180", "choose ENGINE=beam"),
+        ("sim SCENE=boxes.toml RECTANGLES=3", "build it with RECTANGLES=12"),
+    ):
+        assert option in refused(program.main, *words.split(), cwd=tmp_path)
     complaint = refused(program.main, "sim", "SEEDS=3", cwd=tmp_path)
     assert complaint == "error: SEEDS: make sim does not take it; see .venv/bin/raycaster sim --help\n"
+
+
+SPELLED = re.compile(r"(?<![\w-])(?:--[a-z][a-z-]+|[A-Z][A-Z_]+=|(?:leave|give|choose)(?: out)? [A-Z]{3,}\b)")
+FOLDERS = "raycaster", "sim", "fit", "fpga", "debug", "play", "web", "report", "convert", "docs", "golden"
+
+
+def test_no_message_spells_an_option_itself():
+    """Only `as_typed` and `command_line` do, in the form that the user types."""
+    found = []
+    for path in (path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("*.py"))):
+        raised = (node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Raise))
+        for text in (one for node in raised for one in ast.walk(node) if isinstance(one, ast.Constant)):
+            if isinstance(text.value, str) and SPELLED.search(text.value.replace("--help", "")):
+                found.append(f"{path.relative_to(ROOT)}:{text.lineno}: {text.value}")
+    assert found == []
+
+
+def test_the_first_scene_of_the_readme_is_worth_seeing(tmp_path: Path):
+    """Less than half of its picture is background, and floor, mirror and reflections have their own colours."""
+    [text] = re.findall(r"```toml\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    (tmp_path / "mine.toml").write_text(text)
+    design = design_for(tmp_path / "mine.toml", {})
+    pixels = model_of(design.configuration).render(design.shown, design.configuration.screen_geometry).reshape(-1, 3)
+    assert (pixels == design.scene.background).all(axis=1).mean() < 0.5
+    assert len({tuple(pixel) for pixel in pixels.tolist()}) >= 6
+
+
+def test_scenes_are_listed_with_what_they_need(capsys):
+    assert program.main(["scenes"]) == 0
+    lines = {
+        line.split()[0]: " ".join(line.split()[4:]) for line in capsys.readouterr().out.splitlines() if line.split()
+    }
+    needs = {"mirror_room": "", "chessboard": "mirrors, patterns", "colonnade": "turn, mirrors, patterns, light"}
+    assert {name: lines[name] for name in needs} == needs
 
 
 @pytest.mark.parametrize(

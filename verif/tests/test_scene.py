@@ -250,7 +250,7 @@ def test_too_many_rectangles(tmp_path):
     path = write(tmp_path, GOOD + RECT * 2)
     assert len(load_scene(path, rectangles=3).rect) == 3
     assert complaint(path, rectangles=2) == (
-        "rect: 3 rectangles, but the hardware holds 2; remove some or build it with RECTANGLES=3"
+        "rect: 3 rectangles, but the hardware holds 2; remove some or build it with --rectangles 3"
     )
 
 

@@ -231,7 +231,7 @@ const RayCasterScene = (() => {
     const count = contents.rect.length;
     const most = schema.most_rectangles;
     const tooMany = schema.complaints[count > most ? "far_too_many" : "too_many"];
-    if (count > rectangles) return refuse(fill(tooMany, { count, rectangles, most }));
+    if (count > rectangles) return refuse(fill(tooMany, { count, rectangles, most, option: `--rectangles ${count}` }));
     return { scene: built(contents, schema), error: null };
   }
 
