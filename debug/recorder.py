@@ -18,11 +18,11 @@ from raycaster.sim.simulator import (
     Model,
     SimulationError,
     add_simulator_option,
+    announced,
     build_model,
     find_tool,
     run_bench,
 )
-from raycaster.waits import building
 
 MARGIN = 32
 """Clocks after the end of the last row, in which its last pixels reach the pins."""
@@ -103,7 +103,7 @@ def build_and_record(
     find_tool(arguments.simulator)
     config, simulator = design.configuration, arguments.simulator
     try:
-        with console.waiting(f"building {config.name} with {simulator}", building(config.engine)):
+        with announced(console, f"building {config.name} with {simulator}", config.engine):
             model = build_model(config, simulator, build=arguments.build, bench=WINDOW_BENCH)
         with console.waiting("simulating"):
             return record(model, design, rows, target)

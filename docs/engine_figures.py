@@ -39,7 +39,8 @@ def measured(options: Mapping[str, Any], build: Path) -> dict[str, Any]:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         raise UserError(f"{' '.join(command[2:])}: {(done.stderr or done.stdout).strip().splitlines()[-1]}")
-    shown = [json.loads((output_directory(build, options) / name / RESULT).read_text()) for name in scenes]
+    output = output_directory(build, [config.engine], options)
+    shown = [json.loads((output / name / RESULT).read_text()) for name in scenes]
     cells = measure(config, FAMILIES["ecp5"], build / "cells")
     return {
         "configuration": config.name,

@@ -32,10 +32,9 @@ from raycaster.play.system import FASTEST, play
 from raycaster.play.walk import Walker, design_to_walk
 from raycaster.scene import Light
 from raycaster.sim.contact_sheet import write_contact_sheet
-from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, build_model
+from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, announced, build_model
 from raycaster.sw.firmware import build_firmware
 from raycaster.sw.play_script import DEMO, load
-from raycaster.waits import building
 
 FRAMES = 240
 ANIMATION = "game.webp"
@@ -183,7 +182,7 @@ def _film_game(arguments: argparse.Namespace) -> int:
     build, output = arguments.build, arguments.output or arguments.build / "game"
     firmware = build_firmware((build / "firmware").absolute())
     try:
-        with console.waiting(f"building {configuration.name} with a processor", building(configuration.engine)):
+        with announced(console, f"building {configuration.name} with a processor", configuration.engine):
             model = build_model(configuration, "verilator", build=build, bench=SYSTEM_BENCH)
         with Progress(console=console, transient=True) as bars, ThreadPoolExecutor(1) as pool:
             bar = bars.add_task("frames", total=len(buttons))

@@ -28,9 +28,8 @@ from raycaster.output import Console
 from raycaster.play.machine import Frame, Machine, build_machine
 from raycaster.play.system import FASTEST
 from raycaster.play.walk import TURNS, WALKS, Walker, design_to_walk
-from raycaster.sim.simulator import SimulationError
+from raycaster.sim.simulator import SimulationError, announced
 from raycaster.sw.firmware import build_firmware
-from raycaster.waits import building
 
 GAME_KEYS = {"left": ("left", "a"), "right": ("right", "d"), "up": ("up", "w"), "down": ("down", "s")}
 GAME_KEYS |= {"fire": ("space", "return")}
@@ -229,7 +228,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             console.print(f"{button}: {' or '.join(held)}")
         if walker and config.turn:
             console.print("turn and look: also drag with the mouse")
-        with console.waiting(f"building {config.name}", building(config.engine)):
+        with announced(console, f"building {config.name}", config.engine):
             command = build_machine(config, arguments.build, processor=walker is None)
         with Machine(command, config, program) as machine:
             play = walk_through(machine, walker, window) if walker else machine.frame

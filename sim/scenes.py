@@ -9,10 +9,10 @@ import os
 import tempfile
 import time
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import ExitStack
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,7 @@ from rich.text import Text
 
 from raycaster.configuration import Configuration
 from raycaster.convert.provenance import Provenance
-from raycaster.design import Design, packaged_for
+from raycaster.design import Design, left_out, packaged_for
 from raycaster.engines import SEED
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
@@ -37,7 +37,7 @@ from raycaster.options import (
 from raycaster.outcomes import Check, Published, add_keep_option, keep, scope_of
 from raycaster.outcomes import Outcome as Kept
 from raycaster.outcomes import table as markdown
-from raycaster.output import Console, Table, check_replaceable, printable, put, replaced
+from raycaster.output import MARK, Console, Table, check_replaceable, printable, put, remove, replaced
 from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.job import Job
@@ -51,16 +51,33 @@ from raycaster.sim.simulator import (
     convert,
     find_tool,
     run_bench,
+    when_made,
 )
 from raycaster.waits import building
 
 GATES_OPTIONS: Mapping[str, Any] = {"screen": "tiny", "units": 16, "reflections": 2}
 """A netlist's default options: the fewest units with which one design shows all packaged scenes in time."""
 
+PICTURED = ("reflections", "rectangles", "fraction_bits", "rounding", "colour_bits", "allow_underrun", "fix", "cells")
+"""Further options that are in the name of a directory, as they may change the pictures, or say how they were made."""
+
 SHEET = "scenes.png"
 SHEET_COLUMNS = 5
 RESULT = "result.json"
 """File that a bench writes last, when it has a picture."""
+
+NEWLINE = "\n"
+COLUMNS: Mapping[str, str] = {
+    "engine": "",
+    "wrong": "pixels that differ from the golden model",
+    "vs\nexact": "pixels that differ from the exact picture, for the engine that rounds",
+    "frame": "clock cycles to render it",
+    "row\nused": "share of the available clock cycles that the slowest row took",
+    "group\nused": "the same for the slowest group of columns",
+    "alone\nHz": "frames per second of the renderer by itself",
+    "time\ns": "seconds in the simulator",
+}
+"""Headings of the table, and what they mean."""
 
 POLL_SECONDS = 0.1
 
@@ -167,10 +184,35 @@ def simulate(run: Design, model: Model, sim: Path, progress: Path) -> Outcome:
     return Outcome(run, json.loads((target / RESULT).read_text()), failure, target / waves.name if waves else None)
 
 
-def output_directory(build: Path, options: Mapping[str, Any], *, gates: bool = False) -> Path:
-    """Return the directory for a run's pictures; each engine and screen has another one."""
-    apart = (str(options[name]) for name in ("engine", "screen", "rows", "scale") if name in options)
-    return build / ("gates" if gates else "-".join(["sim", *apart]))
+def output_directory(build: Path, engines: Collection[str], options: Mapping[str, Any], kind: str = "sim") -> Path:
+    """Return the directory for the pictures of a run: another one for each engine, and for options that change them.
+
+    Args:
+        build: the directory of all output.
+        engines: engines of the run's designs; several have a directory without an engine's name.
+        options: options of the configuration that were given.
+        kind: beginning of its name.
+    """
+    apart = [*engines] if len({*engines}) == 1 else []
+    apart += [str(options[name]) for name in ("screen", "rows", "scale") if name in options]
+    apart += [f"{name}-{options[name]}".replace("_", "-") for name in PICTURED if name in options]
+    return build / "-".join([kind, *apart])
+
+
+def tidy(directory: Path, outcomes: Sequence[Outcome]) -> None:
+    """Remove what an older run has left that would be taken for this one's: its sheet and, next to a sheet, its scenes.
+
+    A run of one scene leaves the other scenes as they are.
+    """
+    (directory / SHEET).unlink(missing_ok=True)
+    if len(outcomes) > 1:
+        names = {outcome.run.name for outcome in outcomes}
+        for other in directory.iterdir() if directory.exists() else ():
+            if other.name.removesuffix("-failed") not in names and (other / MARK).exists():
+                remove(other)
+    for outcome in outcomes:
+        if outcome.result is not None:
+            remove(directory / f"{outcome.run.name}-failed")
 
 
 def configurations(runs: list[Design]) -> list[Configuration]:
@@ -204,11 +246,20 @@ def build_models(
     """Build a model for each configuration, of its netlist if it has one; return them by the configuration's name."""
     models: dict[str, Model] = {}
     wanted = configurations(runs)
-    with processes(min(jobs, len(wanted)))() as pool:
-        built = pool.map(partial(_build, simulator, waves, build), wanted, [netlists.get(one.name) for one in wanted])
-        for configuration in wanted:
-            with console.waiting(f"building {configuration.name} with {simulator}", building(configuration.engine)):
-                model, seconds = next(built)
+    with tempfile.TemporaryDirectory() as directory, processes(min(jobs, len(wanted)))() as pool:
+        marks = [Path(directory) / one.name for one in wanted]
+        built = [
+            pool.submit(_build, simulator, waves, build, one, netlists.get(one.name), mark)
+            for one, mark in zip(wanted, marks, strict=True)
+        ]
+        for configuration, future, mark in zip(wanted, built, marks, strict=True):
+            while not mark.exists() and not future.done():
+                wait([future], timeout=POLL_SECONDS)
+            with ExitStack() as shown:
+                if mark.exists():
+                    what = f"building {configuration.name} with {simulator}"
+                    shown.enter_context(console.waiting(what, building(configuration.engine)))
+                model, seconds = future.result()
             took = f"built in {seconds:.1f} s" if model.fresh else "was built before"
             console.print(f"{configuration.name} ({simulator}) {took}")
             models[configuration.name] = model
@@ -216,13 +267,14 @@ def build_models(
 
 
 def _build(
-    simulator: str, waves: bool, build: Path, configuration: Configuration, netlist: Netlist | None
+    simulator: str, waves: bool, build: Path, configuration: Configuration, netlist: Netlist | None, mark: Path
 ) -> tuple[Model, float]:
-    """Build a model, and return it with the seconds that it took."""
+    """Build a model, and return it with the seconds that it took; the mark is a file that says that it begins."""
     started = time.perf_counter()
     # A netlist does not keep the names that the bench reads.
     given = {"verilog": netlist.files, "defines": {"NETLIST": 1}} if netlist else {}
-    model = build_model(configuration, simulator, waves=waves, build=build, **given)
+    with when_made(mark.touch):
+        model = build_model(configuration, simulator, waves=waves, build=build, **given)
     return model, time.perf_counter() - started
 
 
@@ -264,18 +316,16 @@ def show_cells(netlists: Mapping[str, Netlist], console: Console) -> None:
 
 def show(outcomes: list[Outcome], console: Console, title: str | None = None) -> None:
     """Print a table with one line per scene, then the waveforms and the failures."""
-    # Narrow enough for a terminal of 80 columns.
-    counts = "wrong", "vs\nexact", "frame", "row", "group", "alone\nHz", "time\ns"
-    table = Table("scene", "engine", *counts, title=title, texts=("engine",), padding=0)
-    for outcome in outcomes:
-        table.add_row(outcome.run.path.stem, *_cells(outcome))
+    cells = [_cells(outcome) for outcome in outcomes]
+    # Without columns that would be empty, and narrow enough for a terminal of 80 columns.
+    used = [number for number in range(len(COLUMNS)) if any(str(row[number]) for row in cells)]
+    columns = [list(COLUMNS.items())[number] for number in used]
+    table = Table("scene", *(heading for heading, _ in columns), title=title, texts=("engine",), padding=0)
+    for outcome, row in zip(outcomes, cells, strict=True):
+        table.add_row(outcome.run.path.stem, *(row[number] for number in used))
     console.print(table)
-    console.print(
-        "wrong: pixels that differ from the golden model. vs exact: pixels that differ from the exact picture, for the "
-        "engine that rounds. frame: clock cycles to render it. row, group: cycles of the slowest one, and the cycles "
-        "available. alone: frames per second of the renderer by itself. time: seconds in the simulator.",
-        style="dim",
-    )
+    meanings = (f"{heading.replace(NEWLINE, ' ')}: {meaning}." for heading, meaning in columns if meaning)
+    console.print(" ".join(meanings), style="dim")
     for outcome in outcomes:
         if outcome.waves:
             console.print(f"{outcome.run.path.stem}: waveforms are in {outcome.waves}", soft_wrap=True)
@@ -285,14 +335,15 @@ def show(outcomes: list[Outcome], console: Console, title: str | None = None) ->
 
 
 def write_sheet(outcomes: list[Outcome], path: Path) -> None:
-    """Write one picture of all frames."""
-    frames = [path.parent / outcome.run.name / "frame.png" for outcome in outcomes if outcome.result is not None]
-    if frames:
-        write_contact_sheet(frames, path, SHEET_COLUMNS)
+    """Write one picture of all frames, with their names."""
+    names = [outcome.run.name for outcome in outcomes if outcome.result is not None]
+    if names:
+        frames = [path.parent / name / "frame.png" for name in names]
+        write_contact_sheet(frames, path, SHEET_COLUMNS, names)
 
 
 def summary(outcomes: list[Outcome], outputs: Path) -> str:
-    """Compose the last line: how many scenes, how many pixels are wrong, and where the pictures are."""
+    """Compose the last line: the scenes, the wrong pixels of the monitor, and the place of the pictures."""
     results = [outcome.result for outcome in outcomes if outcome.result is not None]
     wrong, pixels = (sum(result[name] for result in results) for name in ("wrong_vs_golden", "pixels"))
     scenes = f"{len(results)} scene{'' if len(results) == 1 else 's'}"
@@ -300,7 +351,12 @@ def summary(outcomes: list[Outcome], outputs: Path) -> str:
     one = len(outcomes) == 1
     place = outputs / outcomes[0].run.name / "frame.png" if one else f"{outputs / SHEET} and {outputs}/*/frame.png"
     pictures = f"; picture{'' if one else 's'}: {place}" if results else ""
-    return f"{scenes}, {wrong:,} of {pixels:,} pixels wrong{lost}{pictures}"
+    screens = (outcome.run.configuration.whole_screen for outcome in outcomes)
+    sizes = {
+        f"{screen.horizontal.visible}x{screen.vertical.visible} for {screen.columns}x{screen.rows} rays": None
+        for screen in screens
+    }
+    return f"{scenes}, {wrong:,} of {pixels:,} pixels wrong ({', '.join(sizes)}){lost}{pictures}"
 
 
 def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: str, console: Console) -> None:
@@ -331,7 +387,7 @@ def _frames_per_second(configuration: Configuration, row_cycles: int) -> float:
 def _cells(outcome: Outcome) -> list[str | Text]:
     result, configuration = outcome.result, outcome.run.configuration
     if result is None:
-        return [configuration.engine, Text("failed", "red")] + 6 * [""]
+        return [configuration.engine, Text("failed", "red")] + (len(COLUMNS) - 2) * [""]
     row, group, wrong = result["worst_row_cycles"], result["worst_group_cycles"], result["wrong_vs_golden"]
     budget = configuration.group_budget
     return [
@@ -339,8 +395,8 @@ def _cells(outcome: Outcome) -> list[str | Text]:
         Text(str(wrong), "red" if wrong else ""),
         str(result["wrong_vs_exact"]) if configuration.facts.divides else "",
         str(result["frame_cycles"] or ""),
-        f"{row}/{configuration.screen_geometry.row_cycles}",
-        Text("underrun", "red") if result["underrun"] else f"{group}/{budget}",
+        f"{row / configuration.screen_geometry.row_cycles:.0%}",
+        Text("underrun", "red") if result["underrun"] else f"{group / budget:.0%}",
         f"{_frames_per_second(configuration, row):.0f}" if row else "",
         f"{result['sim_seconds']:.2f}",
     ]
@@ -374,7 +430,16 @@ def command_parser() -> CommandParser:
 def _planned(arguments: argparse.Namespace, console: Console) -> list[Design]:
     """Plan the requested runs; by default a netlist is made of one small design, and shows only plain scenes."""
     options, gates = given_options(arguments), arguments.gates
-    paths = arguments.scene or (list(packaged_scenes(plain=True).values()) if gates else packaged_for(options))
+    paths = arguments.scene
+    if not paths and gates:
+        plain = packaged_scenes(plain=True)
+        paths = list(plain.values())
+        others = [name for name in packaged_scenes() if name not in plain]
+        console.print(f"left out, as a netlist shows plain scenes: {', '.join(others)}", soft_wrap=True)
+    elif not paths:
+        paths = packaged_for(options)
+        for reason, names in left_out(options).items():
+            console.print(f"left out, as each {reason}: {', '.join(names)}", soft_wrap=True)
     return plan_runs(paths, options, GATES_OPTIONS if gates else {}, arguments.fix, console)
 
 
@@ -437,7 +502,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     console = Console()
     runs = _planned(arguments, console)
     jobs = max(1, arguments.jobs)
-    outputs = output_directory(arguments.build, given_options(arguments), gates=gates)
+    engines = dict.fromkeys(run.configuration.engine for run in runs)
+    told = given_options(arguments) | ({"fix": arguments.fix} if arguments.fix else {})
+    told |= {"cells": arguments.cells} if gates else {}
+    outputs = output_directory(arguments.build, [*engines], told, "gates" if gates else "sim")
     for run in runs:
         check_replaceable(outputs / run.name)
     find_tool(arguments.simulator)
@@ -450,6 +518,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         console.print(str(error), style="red", soft_wrap=True)
         return 1
     outcomes = run_all(runs, models, outputs, jobs, console)
+    tidy(outputs, outcomes)
     if gates:
         show_cells(netlists, console)
     show(outcomes, console, "through the netlist" if gates else None)

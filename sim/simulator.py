@@ -41,10 +41,11 @@ from raycaster.digests import sources_digest, tools_digest
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, clocks_per_bit
 from raycaster.options import BUILD
-from raycaster.output import emptied, remove
+from raycaster.output import Console, emptied, remove
 from raycaster.places import ODD_FOR_SHELLS, ODD_FOR_TOOLS, odd_character
 from raycaster.registers import address_bits
 from raycaster.sim.job import Job
+from raycaster.waits import building
 
 SIMULATORS = ("verilator", "icarus")
 MODELS_VARIABLE = "RAYCASTER_MODELS"
@@ -522,6 +523,30 @@ def models(build: Path) -> Path:
     return Path(os.environ.get(MODELS_VARIABLE) or build / "model")
 
 
+_BEGUN: list[Callable[[], object]] = []
+"""Called when something is not there yet, and making it begins."""
+
+
+@contextlib.contextmanager
+def when_made(begun: Callable[[], object]) -> Iterator[None]:
+    """Make a context in which a function is called once, when something begins to be made that is not there."""
+    _BEGUN.append(begun)
+    try:
+        yield
+    finally:
+        _BEGUN[:] = [other for other in _BEGUN if other is not begun]
+
+
+@contextlib.contextmanager
+def announced(console: Console, what: str, engine: str) -> Iterator[None]:
+    """Show that a model is being built, unless it is there already."""
+    with (
+        contextlib.ExitStack() as shown,
+        when_made(lambda: shown.enter_context(console.waiting(what, building(engine)))),
+    ):
+        yield
+
+
 @contextlib.contextmanager
 def made(parent: Path, name: str, sources: Sequence[Path], made_with: object) -> Iterator[tuple[Path, bool]]:
     """Yield the directory of what is made from these sources with these settings, and whether it is still to be made.
@@ -538,6 +563,8 @@ def made(parent: Path, name: str, sources: Sequence[Path], made_with: object) ->
         mark = directory / "made"
         fresh = not mark.exists()
         if fresh:
+            while _BEGUN:
+                _BEGUN.pop()()
             emptied(directory)
             for other in parent.glob("*/made"):
                 # Another process may have been first, and a directory without a mark is not ours.

@@ -22,9 +22,8 @@ from raycaster.options import add_build_option, add_configuration_options, comma
 from raycaster.outcomes import add_keep_option
 from raycaster.output import Console, emptied
 from raycaster.sim.job import Job
-from raycaster.sim.simulator import VERILATOR_FLAGS, Model, SimulationError, build_model, run_bench
+from raycaster.sim.simulator import VERILATOR_FLAGS, Model, SimulationError, announced, build_model, run_bench
 from raycaster.verif import benches, random_scenes
-from raycaster.waits import building
 
 
 @dataclass(frozen=True)
@@ -127,7 +126,7 @@ def run_campaign(
         UserError: a tool is missing.
         SimulationError: the model cannot be built.
     """
-    with console.waiting(f"building {campaign.configuration.name}", building(campaign.configuration.engine)):
+    with announced(console, f"building {campaign.configuration.name}", campaign.configuration.engine):
         model = _build(campaign)  # once, for all workers
     started = time.perf_counter()
     output = campaign.output / bench_digest(campaign.bench, model, campaign.stiff, dict(campaign.registers))

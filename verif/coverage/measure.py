@@ -21,6 +21,7 @@ from pathlib import Path
 import numpy as np
 from rich.text import Text
 
+from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
@@ -36,6 +37,7 @@ from raycaster.sim.simulator import (
     VERILATOR_FLAGS,
     Model,
     SimulationError,
+    announced,
     build_model,
     run_bench,
 )
@@ -46,7 +48,6 @@ from raycaster.verif.coverage.intersections import count_intersections, cross_of
 from raycaster.verif.coverage.lighting import HIT_POINTS, count_hit_points
 from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.soak.soak import BENCH as SOAK
-from raycaster.waits import building
 
 # One design per engine that every bench can run, so that nothing must be merged; at full size, so that the counters run
 # through their range. The seed engine has 16 units, not 32, and so a budget of 159 cycles per group. All 12 rectangles
@@ -273,7 +274,7 @@ def main(argv: list[str] | None = None) -> int:
     """
     arguments = command_parser().parse_args(argv)
     if arguments.seeds < 1 or arguments.jobs < 1:
-        raise UserError("--seeds and --jobs must be at least 1")
+        raise UserError(f"{as_typed('seeds')} and {as_typed('jobs')} must be at least 1")
     design, soaked_design = DESIGNS[arguments.engine], SOAK_DESIGNS[arguments.engine]
     explanations = load_explanations(arguments.engine)
     extra = [path for path in EXTRA_SCENES if not load_scene(path).lacks(design.looks)]
@@ -284,7 +285,7 @@ def main(argv: list[str] | None = None) -> int:
     output.mkdir(parents=True, exist_ok=True)
     started = time.perf_counter()
 
-    with console.waiting(f"building {design.name}", building(design.engine)):
+    with announced(console, f"building {design.name}", design.engine):
         counting = build_model(design, build=arguments.build, flags=FLAGS)
     runs = [*BENCHES, *(Run("sim.frame_bench", scene) for scene in scenes)]
     counts, failures = run_all(counting, runs, output / "runs", arguments.jobs, console, fresh=arguments.fresh)

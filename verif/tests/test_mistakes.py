@@ -115,6 +115,9 @@ OF_COMMANDS = {
         ("--build file", "file"),
     ],
     "verify coverage": [("--build file", "file")],
+    "sim boxes": [("--build file", "file")],
+    "trace boxes": [("PIXEL=1,1 --build file", "file")],
+    "wave boxes": [("--screen tiny --build /proc/x", "/proc/x")],
 }
 """Options of each command, and the complaint."""
 
@@ -123,9 +126,6 @@ DVI = [
     ("mine.toml --engine beam --screen play", "screen: play is for simulation only; leave it"),
 ]
 LATE = {
-    "sim boxes": [("--build file", "file")],
-    "trace boxes": [("PIXEL=1,1 --build file", "file")],
-    "wave boxes": [("--screen tiny --build /proc/x", "/proc/x")],
     "bitstream": DVI,
     "verify dvi": DVI,
     "verify soak": [("--build file", "file")],

@@ -13,12 +13,15 @@ import pytest
 from conftest import FLOOR_SCENE, PATTERNED_SCENE, ROOT, SMALL_SCENE, TURNED_SCENE, called
 from PIL import Image
 
+from raycaster.configuration import OPTIONS as DESIGN_OPTIONS
 from raycaster.configuration import configure
-from raycaster.design import Design, design_for
-from raycaster.output import Console, replaced
-from raycaster.scene import load_scene
+from raycaster.design import Design, design_for, left_out, packaged_for
+from raycaster.engines.engine import LOOKS
+from raycaster.output import Console, emptied, replaced
+from raycaster.scene import load_scene, packaged_scenes
 from raycaster.sim import scenes as simulate
-from raycaster.sim.scenes import Outcome, output_directory, run_all, show
+from raycaster.sim.contact_sheet import CAPTION
+from raycaster.sim.scenes import PICTURED, Outcome, output_directory, run_all, show
 from raycaster.sim.simulator import MODELS_VARIABLE, Model, SimulationError, convert
 
 # Icarus builds quickly.
@@ -38,28 +41,38 @@ def test_one_scene_and_two(tmp_path, monkeypatch):
     """The run writes pictures, results and a table; with waveforms, it names their file; a sheet shows both scenes."""
     monkeypatch.delenv(MODELS_VARIABLE)  # so that no built model is found
     said = _sim(tmp_path, "--waves")
-    output = tmp_path / "sim-exact-tiny" / "small"
+    output = tmp_path / "sim-exact-tiny-rectangles-3" / "small"
     for name in ("frame", "golden", "exact", "diff"):
         assert Image.open(output / f"{name}.png").size == (128, 96)
     assert (output / "frame.png").read_bytes() == (output / "golden.png").read_bytes()
     result = json.loads((output / "result.json").read_text())
     assert result["wrong_vs_golden"] == 0
     assert [path.name for path in output.parent.iterdir()] == ["small"], "nothing half-written is left"
-    assert f"1 scene, 0 of 12,288 pixels wrong; picture: {output / 'frame.png'}\n" in said
+    sizes = "(128x96 for 64x48 rays)"
+    assert f"1 scene, 0 of 12,288 pixels wrong {sizes}; picture: {output / 'frame.png'}\n" in said
+    assert "building exact-tiny48-u2-r3-m1-c8 with icarus" in said
     assert (output / "waves.fst").stat().st_size > 0
     assert str(output / "waves.fst") in said
     assert "was built before" not in said
 
     other = tmp_path / "other.toml"
     other.write_text(SMALL_SCENE.read_text().replace("#c8c8b4", "#ff0000"))
+    for stale in ("older", "older-failed"):
+        emptied(output.parent / stale)
+    (output.parent / "mine").mkdir()
     said = _sim(tmp_path, other, "--waves")
-    assert "was built before" in said
-    sheet, output = Image.open(tmp_path / "sim-exact-tiny" / "scenes.png"), output.parent
-    assert sheet.size == (2 * 320 + 8, 240)
+    assert ("was built before" in said, "building" in said) == (True, False)
+    sheet, output = Image.open(tmp_path / "sim-exact-tiny-rectangles-3" / "scenes.png"), output.parent
+    assert sheet.size == (2 * 320 + 8, 240 + CAPTION)
+    names = [sheet.crop((left, 240, left + 320, 240 + CAPTION)) for left in (0, 328)]
+    assert all(low == 0 for name in names for low, _ in name.getextrema()), "no name below a frame"
+    assert {path.name for path in output.iterdir()} == {"small", "other", "mine", "scenes.png"}
     floors = [sheet.getpixel((left + 160, 235)) for left in (0, 328)]
     assert floors == [Image.open(output / name / "frame.png").getpixel((64, 94)) for name in ("small", "other")]
     pictures = f"{output / 'scenes.png'} and {output}/*/frame.png"
-    assert f"2 scenes, 0 of 24,576 pixels wrong; pictures: {pictures}\n" in said
+    assert f"2 scenes, 0 of 24,576 pixels wrong {sizes}; pictures: {pictures}\n" in said
+    _sim(tmp_path)
+    assert {path.name for path in output.iterdir()} == {"small", "other", "mine"}, "the sheet has an older frame"
 
 
 NAMES = ("checkered_hall", "facing_mirrors")
@@ -85,14 +98,42 @@ def test_the_table_fits_a_terminal(engine, capsys):
         assert {"12345", "1234567", "123.45"} < {*row}
         # The golden models of other engines are exact, so a second count would add nothing.
         assert row.count("12345") == (2 if engine == "seed" else 1)
+        assert sum(cell.endswith("%") for cell in row) == 2
+    # No column is empty, and each has a meaning.
+    assert ("exact" in lines[1] + lines[2]) == (engine == "seed")
 
 
 def test_pictures_of_another_screen_or_engine_are_kept_apart():
-    places = [
-        output_directory(Path("build"), options)
-        for options in ({}, {"units": 8}, {"engine": "beam"}, {"engine": "beam", "rows": 180}, {"screen": "tiny"})
-    ]
-    assert [place.name for place in places] == ["sim", "sim", "sim-beam", "sim-beam-180", "sim-tiny"]
+    """They are for each engine that draws, and each option that may change a picture."""
+    for expected, engines, options in (
+        ("sim", ["seed", "exact"], {}),
+        ("sim-seed", ["seed"], {"units": 8, "bus": "apb"}),
+        ("sim-beam-180", ["beam"], {"engine": "beam", "rows": 180}),
+        ("sim-exact-tiny", ["exact"], {"screen": "tiny"}),
+        ("sim-seed-reflections-0-rectangles-20", ["seed"], {"reflections": 0, "rectangles": 20}),
+        ("sim-seed-fraction-bits-3-rounding-nearest", ["seed"], {"fraction_bits": 3, "rounding": "nearest"}),
+        ("sim-seed-colour-bits-4-fix-all", ["seed"], {"colour_bits": 4, "fix": "all"}),
+    ):
+        assert output_directory(Path("build"), engines, options) == Path("build") / expected
+    alike = {"engine", "screen", "rows", "scale", "units", "pixels", "divider_bits", "culling", "bus", *LOOKS}
+    assert alike | {*PICTURED} == {*DESIGN_OPTIONS, "fix", "cells"}
+
+
+@pytest.mark.parametrize(
+    ("options", "reason", "among"),
+    [
+        ({"engine": "beam"}, "needs a light: the beam engine casts no shadows", {"lamplight"}),
+        ({"engine": "seed"}, "needs a camera that turns: the seed engine measures depth", {"pool"}),
+        ({"patterns": "0"}, "needs rectangles with patterns", {"chessboard"}),
+        ({"engine": "exact"}, "", set()),
+    ],
+)
+def test_scenes_that_are_left_out_have_a_reason(options, reason, among):
+    found = left_out(options)
+    assert bool(found) == bool(reason)
+    names = {name for said, listed in found.items() if said.startswith(reason) for name in listed}
+    assert among <= names and not names & {path.stem for path in packaged_for(options)}
+    assert len(packaged_for(options)) + sum(map(len, found.values())) == len(packaged_scenes())
 
 
 def test_an_interrupted_run_leaves_the_pictures(tmp_path, monkeypatch):
@@ -132,7 +173,7 @@ def test_a_wrong_pixel_fails(tmp_path):
     assert faults
     combiner.write_text(text)
     said = _sim(tmp_path, code=1)
-    output = tmp_path / "sim-exact-tiny" / "small"
+    output = tmp_path / "sim-exact-tiny-rectangles-3" / "small"
     command = f"raycaster trace {SMALL_SCENE} --pixel 0,0 {OPTIONS}"
     for text in ("pixels are wrong", str(output / "sim.log"), str(output / "diff.png"), command):
         assert text in said
