@@ -219,8 +219,8 @@ def make_bitstream(
     name, seconds, (place, pack) = board.name, {}, flow.programs
     command = [place, *board.options, "--json", f"{name}.json", *flow.place(name), "--seed", str(seed)]
     with replaced(output) as work, Progress(*columns, console=console or Console(quiet=True)) as progress:
-        stages: dict[str, Callable[[], CompletedProcess[str] | None]] = {
-            "synthesise": partial(_synthesise, board, design, work),
+        stages: dict[str, Callable[[], CompletedProcess[str] | Path]] = {
+            "synthesise": partial(synthesise, board, design, work),
             "place and route": partial(place_and_route, command, flow.again, work),
             "pack": partial(run_program, [pack, *flow.pack(board)], work, PACK_TIMEOUT),
         }
@@ -228,7 +228,7 @@ def make_bitstream(
             task = progress.add_task(description, total=1)
             start = time.monotonic()
             done = run()
-            if done is not None and done.returncode:
+            if isinstance(done, CompletedProcess) and done.returncode:
                 log = output.with_suffix(".log")
                 log.write_text(done.stdout + done.stderr)
                 reason = next((line for line in done.stderr.splitlines() if line.startswith("ERROR")), "it failed")
@@ -240,9 +240,10 @@ def make_bitstream(
     return outcome
 
 
-def _synthesise(board: OpenBoard, design: Design | ProcessorDesign, work: Path) -> None:
+def synthesise(board: OpenBoard, design: Design | ProcessorDesign, work: Path) -> Path:
+    """Write a board's project into a directory, and the JSON netlist that is placed."""
     sources = [path.relative_to(work) for path in write_project(board, design, work)]
-    write_netlist(FLOWS[board.flow], sources, board.name, board.multipliers, work)
+    return write_netlist(FLOWS[board.flow], sources, board.name, board.multipliers, work)
 
 
 def _read_report(flow: Flow, wanted: Clocks, path: Path, seconds: Mapping[str, float]) -> Outcome:

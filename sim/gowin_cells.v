@@ -94,8 +94,8 @@ module MULT36X36 #(
     );
 endmodule
 
-// A block RAM whose bytes have 8 or 9 bits; the smaller words of 8-bit bytes are those of 9-bit bytes. An asynchronous
-// reset makes what is read unknown.
+// A block RAM whose bytes have 9 bits, or 8 of these. With 8, words are smaller than a byte. An asynchronous reset makes
+// what is read unknown.
 module gowin_ram #(
     parameter BYTE = 9, WIDTH_A = 36, WIDTH_B = 36, MODE_A = 0, MODE_B = 0, READ_MODES = 0, RESET_MODE = "SYNC",
     SELECT_A = 3'b000, SELECT_B = 3'b000,
@@ -107,11 +107,6 @@ module gowin_ram #(
     input wire [4*BYTE-1:0] data_a, data_b,
     output wire [4*BYTE-1:0] seen_a, seen_b
 );
-    function integer nine;
-        input integer width;
-        nine = BYTE == 8 && width >= 8 ? width / 8 * 9 : width;
-    endfunction
-
     function [18431:0] contents;
         input unused;
         integer place;
@@ -126,7 +121,7 @@ module gowin_ram #(
     wire asynchronous = RESET_MODE != "SYNC" && {reset_a, reset_b} !== 2'b00;
 
     block_ram #(
-        .WIDTH_A(nine(WIDTH_A)), .WIDTH_B(nine(WIDTH_B)), .MODE_A(MODE_A), .MODE_B(MODE_B), .CONTENTS(contents(1'b0))
+        .WIDTH_A(WIDTH_A), .WIDTH_B(WIDTH_B), .MODE_A(MODE_A), .MODE_B(MODE_B), .CONTENTS(contents(1'b0))
     ) ram (
         .clk_a(clk_a), .enable_a(enable_a && select_a === SELECT_A), .write_a(write_a), .reset_a(reset_a),
         .address_a(address_a), .data_a(wide_data_a), .seen_a(wide_a),

@@ -121,7 +121,7 @@ def as_verilog(placed: Path, family: str, elsewhere: Collection[str] = ()) -> li
 
     Raises:
         NetlistError: a cell has no model.
-        ToolError: a cell has a port or a parameter that its model lacks.
+        ToolError: a cell has a port or a parameter that its model lacks; not with models in other files.
     """
     directory, (macros, known) = placed.parent, known_models(family)
     cells = cells_of(placed).keys() - set(elsewhere)
@@ -138,7 +138,8 @@ def as_verilog(placed: Path, family: str, elsewhere: Collection[str] = ()) -> li
             # Yosys's black boxes make way for the models, so that it compares ports and parameters with these.
             f"delete {' '.join(f'={name}' for name in chosen)}",
             f"read_verilog -lib {_CELLS}",
-            f"hierarchy -check -top {placed.stem}",
+            # Black boxes that stay lack parameters without a default value; then the simulator checks the names.
+            f"hierarchy {'' if elsewhere else '-check '}-top {placed.stem}",
             "delete t:$scopeinfo",
             f"rename -hide w:{_LONGEST_NAME * '?'}?*",
             "check -assert",

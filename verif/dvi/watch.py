@@ -77,6 +77,13 @@ _LINK = """
 """
 """Part of a board with a DVI link. A pair whose wires are not each other's inverse is x."""
 
+_PLACED_LINK = """
+    wire sample = top.{shift_clk};
+    wire [3:0] value = {value};
+    integer unsteady = 0;
+"""
+"""Part of a board whose netlist has a DVI link; a netlist lacks most names in `_LINK`."""
+
 _PARALLEL = """
     // Data must be stable around the rising edge of the clock.
     localparam real STILL_NS = 3;
@@ -112,6 +119,7 @@ def watch(
     buttons: Sequence[int] = (0,),
     late_ns: int = 0,
     again: int = 0,
+    placed: bool = False,
 ) -> list[np.ndarray]:
     """Simulate the board and return the first frames that its monitor sees after reset.
 
@@ -128,6 +136,7 @@ def watch(
             `scene_player.BUTTONS`.
         late_ns: extra duration of reset.
         again: number of frames to record after a second reset, in the middle of a frame; they follow the others.
+        placed: True if the Verilog is a netlist; then nothing checks when the symbols of a DVI link are sampled.
 
     Returns:
         The frames, each uint8 (visible lines, visible pixels, 3).
@@ -148,7 +157,7 @@ def watch(
         values[0] += frame // 2
     arguments = [f"+values={values[0]}", f"+again={values[1] if again else 0}", f"+pressed={pressed}"]
     arguments += [f"+each={frame}", f"+late_ns={late_ns}"]
-    rates, recorded = _record(board, sources, design, directory, simulator, arguments)
+    rates, recorded = _record(board, sources, design, directory, simulator, arguments, placed)
     seen = []
     for count, rate, lines in zip((frames, again), rates, recorded, strict=False):
         if abs(rate / per_pixel / screen.monitor_hz * 1e6 - 1) > ALLOWED:
@@ -176,6 +185,7 @@ def _record(
     directory: Path,
     simulator: str,
     arguments: Sequence[str],
+    placed: bool,
 ) -> tuple[list[float], list[list[str]]]:
     """Return the number of values per microsecond, and the values in hexadecimal, of each recording.
 
@@ -184,7 +194,7 @@ def _record(
     directory.mkdir(parents=True, exist_ok=True)
     program = build_program(
         f"{board.name}-board", "board_bench",
-        [*sources, HERE / "models.v", _device(board, sources[-1], design, directory), HERE / "bench.v"],
+        [*sources, HERE / "models.v", _device(board, sources[-1], design, directory, placed), HERE / "bench.v"],
         simulator=simulator, flags=("-O3", "--output-split", "20000"), compiler=("-O1",),
     )  # fmt: skip
     done = subprocess.run([*program, *arguments], cwd=directory, capture_output=True, text=True, check=False)
@@ -208,14 +218,18 @@ def _record(
     return [float(rate) for rate in values["rate"]], recorded
 
 
-def _device(board: Board, top: Path, design: Configuration, directory: Path) -> Path:
+def _device(board: Board, top: Path, design: Configuration, directory: Path, placed: bool) -> Path:
     """Write a module with the board in it, for the bench."""
     wiring = wiring_of(board.name)
     [pin_file] = [path for path in top.parent.glob(f"{top.stem}.*") if path.suffix[1:] in PIN_FILES]
     pins, _ = read_pin_file(pin_file)
     if "link" in wiring.outputs:
         pair = "{" + ", ".join(f"link[{at}] === ~link_n[{at}] ? link[{at}] : 1'bx" for at in (3, 2, 1, 0)) + "}"
-        inside = _LINK.replace("{value}", pair if "link_n" in wiring.outputs else "link")
+        part = _LINK
+        if placed:
+            # Yosys keeps some of the net's names.
+            part = _PLACED_LINK.replace("{shift_clk}", re.findall(r"\\board\.\S*shift_clk ", top.read_text())[0])
+        inside = part.replace("{value}", pair if "link_n" in wiring.outputs else "link")
     elif "dac_clock" in wiring.outputs:
         inside = _PARALLEL.format(sync_n="sync_n" if "sync_n" in wiring.outputs else "1'b0")
     else:

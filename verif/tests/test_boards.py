@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SMALL_SCENE, refused
+from conftest import ROOT, SMALL_SCENE, refused
 from engine_vectors import small_config
 from small_program import write_program
 
@@ -22,7 +22,7 @@ from raycaster.design import Design, ProcessorDesign, design_for
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix
 from raycaster.fpga import bitstream, quartus
-from raycaster.fpga.bitstream import LOADER, Outcome, make_bitstream, write_project
+from raycaster.fpga.bitstream import LOADER, Outcome, make_bitstream, synthesise, write_project
 from raycaster.fpga.board import Board, BoardError, OpenBoard, board_names, find_board, load_board
 from raycaster.fpga.flows import FLOWS, clocks_for
 from raycaster.fpga.netlist import left_to_logic
@@ -33,12 +33,14 @@ from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import load_scene
 from raycaster.screens import Screen, Span
 from raycaster.sim.monitor import VideoError
+from raycaster.sim.netlist import as_verilog
 from raycaster.verif.dvi.watch import golden, watch
 
 BOARDS = [find_board(name, OpenBoard) for name in board_names(OpenBoard)]
 ULX3S = find_board("ulx3s", OpenBoard)
 CLOCKS, SERIALISER, LANE, TOP = "board_clocks.v", "dvi_serialiser.v", "dvi_lane.v", "dvi_board.v"
 ENCODERS, ENCODER = "dvi_encoder.v", "tmds_encoder.v"
+MODELS = ROOT / "verif" / "dvi" / "models.v"
 
 
 # Descriptions ---------------------------------------------------------------------------------------------------------
@@ -269,6 +271,19 @@ def test_a_broken_link_is_noticed(design, tmp_path, file, right, wrong, complain
         assert not np.array_equal(frame, golden(design))
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["ulx3s", "icebreaker", "tang_nano_20k"])
+def test_the_placed_netlist_draws_the_picture(tmp_path, name):
+    """The netlist that nextpnr places, of a whole board of each family, shows the scene."""
+    board = find_board(name, OpenBoard)
+    built = small_design(board)
+    elsewhere = re.findall(r"^module (\w+)", MODELS.read_text(), re.MULTILINE)
+    cells, netlist = as_verilog(synthesise(board, built, tmp_path), board.flow, elsewhere)
+    sources = [cells, netlist.replace(tmp_path / f"{name}.v")]
+    [frame] = watch(board, sources, built.configuration, 1, tmp_path / "run", placed=True)
+    assert np.array_equal(frame, golden(built))
+
+
 # Bitstreams -----------------------------------------------------------------------------------------------------------
 
 
@@ -303,7 +318,7 @@ def test_a_small_bitstream(board, tmp_path):
 def test_nextpnr_fails(design, tmp_path, monkeypatch):
     """An error of nextpnr is reported in one line, with the path of its log; here, a pin that the package lacks."""
     said = "Info: packing\nERROR: package does not have a pin named 'Z9'\n"
-    monkeypatch.setattr(bitstream, "_synthesise", lambda board, design, work: None)
+    monkeypatch.setattr(bitstream, "synthesise", lambda board, design, work: None)
     monkeypatch.setattr(bitstream, "place_and_route", lambda command, *_: CompletedProcess(command, 1, "", said))
     with pytest.raises(UserError) as error:
         make_bitstream(ULX3S, design, tmp_path / "out")

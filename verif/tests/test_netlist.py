@@ -155,7 +155,6 @@ MODES = {
 }  # fmt: skip
 """Values of parameters that the cells of each family's netlist must have, so that their models are tested with them."""
 
-NETS = multipliers._nets  # pyright: ignore[reportPrivateUsage] a fault is planted there
 REGISTERED = 5
 """Products that only plain registers read: `plain`, `narrow`, `whole`, `negative`, `nine`."""
 
@@ -229,7 +228,6 @@ def test_cells(placed, tmp_path, family):
             ("ecp5", "no-change", "else if (enable_a && !(write_a && MODE_A == 0))", "else if (enable_a)"),
             ("ecp5", "old-word", "MODE_A == 1 ? changed_a", "MODE_A ? changed_a"),
             ("gowin", "sign", "b_signed & b[WIDTH-1]", "b[WIDTH-1]"),
-            ("gowin", "bytes", "width / 8 * 9", "width"),
             ("gowin", "contents", "INIT[BYTE * place", "INIT[8 * place"),
             ("gowin", "write-mode", ".MODE_A(WRITE_MODE)", ".MODE_A(0)"),
             ("gowin", "selection", "select_b === SELECT_B", "select_b !== SELECT_B"),
@@ -252,7 +250,6 @@ def test_a_faulty_model_is_noticed(placed, tmp_path, family, right, wrong):
         pytest.param("_is_plain", lambda cell: cell["connections"]["LSR"] == ["0"], id="enable"),
         pytest.param("_is_plain", lambda cell: cell["parameters"]["CEMUX"].strip() == "1", id="reset"),
         pytest.param("connect_register", lambda multiplier, clock: None, id="no-register"),
-        pytest.param("_nets", lambda cell, way: sorted(NETS(cell, way), reverse=True), id="order-of-bits"),
     ],
 )
 def test_a_faulty_rewrite_is_noticed(placed, tmp_path, monkeypatch, name, value):
