@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from raycaster.complaints import as_typed
 from raycaster.configuration import OPTIONS
 from raycaster.options import CommandParser, shown_default
 from raycaster.output import Console, Table
@@ -20,5 +21,5 @@ def main(argv: Sequence[str] | None = None) -> None:
     command_parser().parse_args(argv)
     table = Table("option", "meaning", "default", texts=("meaning", "default"))
     for name in OPTIONS:
-        table.add_row("--" + name.replace("_", "-"), OPTIONS[name].description, shown_default(OPTIONS[name]))
+        table.add_row(as_typed(name), OPTIONS[name].description, shown_default(OPTIONS[name]))
     Console().print(table)

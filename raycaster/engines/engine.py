@@ -21,7 +21,7 @@ LOOK_NAMES = {
     "patterns": "rectangles with patterns",
     "light": "a light",
 }
-"""What the options for optional features of scenes are for."""
+"""Purposes of the options for optional features of scenes."""
 
 LOOKS = tuple(LOOK_NAMES)
 """Options for optional features of scenes."""
