@@ -19,7 +19,7 @@ from raycaster.rtl.common.widths import exact_slope_bits
     beam_config(reflections=2, turn=True),
     beam_config(reflections=3, screen="tiny"),
     beam_config(reflections=4, turn=True),
-    quick=[f"beam-vga{name}-c8-turn" for name in ("180-s4-u1-r12-m1", "240-s2-u1-r12-m2", "240-s2-u1-r12-m4")],
+    quick=["beam-tiny48-s2-u1-r12-m3-c8", "beam-vga180-s4-u1-r12-m1-c8-turn", "beam-vga240-s2-u1-r12-m4-c8-turn"],
 )
 def test_ray_fold(config, leaf_of, random):
     inputs = {"before": lambda: room_image_of(config), "slope": lambda: Direction(exact_slope_bits(config) + 1)}
