@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
@@ -47,6 +49,24 @@ def wrong_pixels(picture: np.ndarray, reference: np.ndarray) -> np.ndarray:
 def count_wrong(picture: np.ndarray, reference: np.ndarray) -> int:
     """Count the pixels that differ; see `wrong_pixels`."""
     return int(wrong_pixels(picture, reference).sum())
+
+
+def colour_text(channels: Iterable[int]) -> str:
+    """Write a colour, 8 bits per channel, as in scene files: #rrggbb."""
+    return f"#{bytes(int(channel) for channel in channels).hex()}"
+
+
+def describe_difference(picture: np.ndarray, reference: np.ndarray) -> str:
+    """Say how many pixels differ, and which is the first one; empty if none does. See `wrong_pixels`."""
+    place = first_wrong(picture, reference)
+    if place is None:
+        return ""
+    column, row = place
+    seen, expected = (colour_text(one[row, column]) for one in (picture, reference))
+    return (
+        f"{count_wrong(picture, reference):,} of {reference[..., 0].size:,} pixels are wrong; the first, at column "
+        f"{column} of line {row}, is {seen}, expected {expected}"
+    )
 
 
 def first_wrong(picture: np.ndarray, reference: np.ndarray) -> tuple[int, int] | None:

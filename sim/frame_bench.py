@@ -13,6 +13,19 @@ from PIL import Image
 
 from raycaster.golden.picture import count_wrong, diff_picture, first_wrong
 from raycaster.sim.harness import Harness
+from raycaster.sim.monitor import VideoError
+
+SYNC = "sync.png"
+"""Picture of a frame with its blanking, if that departs from the video standard."""
+
+
+def explained(error: VideoError, output: Path) -> str:
+    """Write the picture of a frame that departs from the video standard, if there is one; say where to look."""
+    where = "the signals come from the module video_generator"
+    if error.picture is None:
+        return where
+    Image.fromarray(error.picture).save(output / SYNC)
+    return f"{output / SYNC} shows them in pink; {where}"
 
 
 @cocotb.test()
@@ -24,7 +37,10 @@ async def one_frame(bench: HierarchyObject) -> None:
     started = time.perf_counter()
     await harness.reset()
     await harness.load(scene, reflections)
-    frame = await harness.monitor.frame(on_row=harness.write_progress)
+    try:
+        frame = await harness.monitor.frame(on_row=harness.write_progress)
+    except VideoError as error:
+        raise VideoError(f"{error}; {explained(error, Path(job.output))}") from None
     frame_cycles = int(harness.bench.busy_cycles.value)
     cycles = await bus.read("cycles")
     status = await bus.read("status")

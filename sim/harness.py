@@ -14,7 +14,7 @@ from cocotb.triggers import FallingEdge, RisingEdge
 
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
-from raycaster.golden.picture import count_wrong, shown
+from raycaster.golden.picture import describe_difference, shown
 from raycaster.scene import Scene, load_scene
 from raycaster.sim.buses import DRIVERS
 from raycaster.sim.job import Job
@@ -77,12 +77,8 @@ class Viewer:
         Raises:
             AssertionError: pixels differ; says how many, and the first one.
         """
-        if wrong := count_wrong(seen, expected):
-            line, pixel, _ = np.argwhere(seen != expected)[0]
-            raise AssertionError(
-                f"{what}: {wrong} of {seen[..., 0].size} pixels are wrong; the first at line {line}, pixel {pixel} "
-                f"is {seen[line, pixel].tolist()}, expected {expected[line, pixel].tolist()}"
-            )
+        if difference := describe_difference(seen, expected):
+            raise AssertionError(f"{what}: {difference}")
 
     async def expect(self, scene: Scene, reflections: int, what: str) -> None:
         """Wait for the next frame, and check every pixel of the scene that it must show."""

@@ -15,17 +15,27 @@ from cocotb.simtime import get_sim_time
 from cocotb.triggers import Timer
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
+from raycaster.golden.picture import WRONG
 from raycaster.screens import Screen, Span
 
 CLOCK_NS = 20
 """Period of the bench's clock, for any design; only cycles count here."""
+
+PULSE = (30, 40, 110)
+"""Colour of a sync pulse in a `raster`."""
 
 _CONTROL_BITS = 4
 """Bits of a sample before its colour: HS, VS, BLANK_N, SYNC_N."""
 
 
 class VideoError(AssertionError):
-    """A sample that departs from the video standard; says which, and what was expected."""
+    """A sample that departs from the video standard; says which, and what was expected.
+
+    Attributes:
+        picture: the frame with its blanking, uint8 (lines, samples, 3); None if there was no whole frame. See `raster`.
+    """
+
+    picture: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -166,38 +176,97 @@ def decode_frame(lines: Sequence[Line], screen: Screen, colour_bits: int, *, bla
 
     Raises:
         VideoError: a sample is wrong; names the line (from VS's leading edge), the sample (from HS's leading edge) and
-            what was expected.
+            what was expected, and has a picture.
     """
+    try:
+        return _decode(lines, screen, colour_bits, blanking)
+    except VideoError as error:
+        error.picture = raster(lines, screen, colour_bits, blanking=blanking)
+        raise
+
+
+def raster(lines: Sequence[Line], screen: Screen, colour_bits: int, *, blanking: bool = True) -> np.ndarray:
+    """Draw a frame with its blanking, for people to look at: each wrong sample is pink, a sync's pulse dark blue.
+
+    Args: as in `decode_frame`.
+
+    Returns:
+        uint8 (lines, samples, 3), both counted as in the messages of `decode_frame`.
+    """
+    bits = _samples(lines, screen, colour_bits)
+    controls, in_picture = bits[..., :_CONTROL_BITS], _in_picture(screen)
+    wrong = (bits > 1).any(axis=-1) | (bits[..., _CONTROL_BITS:].any(axis=-1) & ~in_picture)
+    for number, (_, expected, _) in enumerate(_standard(screen, blanking)):
+        wrong |= controls[..., number] != expected
+    pulse = np.zeros_like(wrong)
+    for number, span in enumerate((screen.horizontal, screen.vertical)):
+        pulse |= controls[..., number] == span.active_high
+    picture = _colours(bits & 1, colour_bits)
+    picture[pulse & ~in_picture] = PULSE
+    picture[wrong] = WRONG
+    return picture
+
+
+def _decode(lines: Sequence[Line], screen: Screen, colour_bits: int, blanking: bool) -> np.ndarray:
     horizontal, vertical = screen.horizontal, screen.vertical
     for number, line in enumerate(lines):
         if line.samples != horizontal.total:
             raise VideoError(
                 f"line {number}: {line.samples} pixels between leading edges of HS, expected {horizontal.total}"
             )
-    sample_bits = _CONTROL_BITS + 3 * colour_bits
-    characters = np.frombuffer("".join(line.bits for line in lines).encode(), np.uint8)
-    # A line's characters begin with its last sample; before that are characters of samples that never came.
-    characters = characters.reshape(vertical.total, -1)[:, -horizontal.total * sample_bits :]
-    bits = (characters ^ ord("0")).reshape(vertical.total, horizontal.total, sample_bits)
+    bits = _samples(lines, screen, colour_bits)
     if bits.max() > 1:
-        unknown = (bits[:, ::-1] > 1).any(axis=-1)
+        unknown = (bits > 1).any(axis=-1)
         line, sample = np.argwhere(unknown)[0]
         raise VideoError(f"line {line}, sample {sample}: an output is neither 0 nor 1, in {unknown.sum()} samples")
-
-    column = np.arange(horizontal.total)
-    row = np.arange(vertical.total)[:, None]
-    in_picture = _visible(row, vertical) & _visible(column, horizontal)
-    controls = bits[:, ::-1, :_CONTROL_BITS]
-    _check("HS", controls[..., 0], (column < horizontal.sync) == horizontal.active_high)
-    _check("VS", controls[..., 1], (row < vertical.sync) == vertical.active_high)
-    _check("BLANK_N", controls[..., 2], in_picture & blanking)
-    _check("SYNC_N", controls[..., 3], np.False_)
-    # Packing along an axis of 8 takes numpy ten times as long as packing everything at once.
-    channels = np.zeros((*in_picture.shape, 3, CHANNEL_BITS), np.uint8)
-    channels[..., :colour_bits] = bits[..., _CONTROL_BITS:].reshape(*in_picture.shape, 3, colour_bits)
-    colours = np.packbits(channels).reshape(*in_picture.shape, 3)[:, ::-1]
-    _check("any colour in blanking", colours.any(axis=-1) & ~in_picture, np.False_)
+    in_picture = _in_picture(screen)
+    for number, (what, expected, rule) in enumerate(_standard(screen, blanking)):
+        _check(what, bits[..., number], expected, rule)
+    colours = _colours(bits, colour_bits)
+    _check("any colour in blanking", colours.any(axis=-1) & ~in_picture, np.False_, "0")
     return colours[in_picture].reshape(vertical.visible, horizontal.visible, 3)
+
+
+def _samples(lines: Sequence[Line], screen: Screen, colour_bits: int) -> np.ndarray:
+    """Return the bits of a frame's samples, uint8 (lines, samples, bits), in order; more than 1 if unknown or missing.
+
+    A sample's bits are HS, VS, BLANK_N and SYNC_N, then red, green and blue, each from its highest bit on.
+    """
+    total, sample_bits = screen.horizontal.total, _CONTROL_BITS + 3 * colour_bits
+    # A line's characters begin with its last sample; before that are characters of samples that never came.
+    kept = (line.bits[len(line.bits) - min(total, line.samples) * sample_bits :] for line in lines)
+    texts = (text.rjust(total * sample_bits, "x") for text in kept)
+    characters = np.frombuffer("".join(texts).encode(), np.uint8)
+    return (characters ^ ord("0")).reshape(len(lines), total, sample_bits)[:, ::-1]
+
+
+def _standard(screen: Screen, blanking: bool) -> list[tuple[str, np.ndarray | np.bool, str]]:
+    """List the controls of a sample: their names, values, bool (lines, samples) or broadcast, and rules in words."""
+    horizontal, vertical = screen.horizontal, screen.vertical
+    column, row = np.arange(horizontal.total), np.arange(vertical.total)[:, None]
+    hs, vs = (f"{int(span.active_high)} in {what} 0 to {span.sync - 1} and {int(not span.active_high)} in all others"
+        for what, span in (("samples", horizontal), ("lines", vertical)))  # fmt: skip
+    return [
+        ("HS", (column < horizontal.sync) == horizontal.active_high, hs),
+        ("VS", (row < vertical.sync) == vertical.active_high, vs),
+        ("BLANK_N", _in_picture(screen) & blanking, "1 in the picture only" if blanking else "0"),
+        ("SYNC_N", np.False_, "0"),
+    ]
+
+
+def _in_picture(screen: Screen) -> np.ndarray:
+    """Bool (lines, samples): the sample is visible."""
+    row, column = np.arange(screen.vertical.total)[:, None], np.arange(screen.horizontal.total)
+    return _visible(row, screen.vertical) & _visible(column, screen.horizontal)
+
+
+def _colours(bits: np.ndarray, colour_bits: int) -> np.ndarray:
+    """Return the colours of samples, uint8 (lines, samples, 3), from their bits."""
+    # Packing along an axis of 8 takes numpy ten times as long as packing everything at once.
+    shape = bits.shape[:2]
+    channels = np.zeros((*shape, 3, CHANNEL_BITS), np.uint8)
+    channels[..., :colour_bits] = bits[..., _CONTROL_BITS:].reshape(*shape, 3, colour_bits)
+    return np.packbits(channels).reshape(*shape, 3)
 
 
 def _visible(position: np.ndarray, span: Span) -> np.ndarray:
@@ -206,13 +275,16 @@ def _visible(position: np.ndarray, span: Span) -> np.ndarray:
     return (position >= start) & (position < start + span.visible)
 
 
-def _check(what: str, seen: np.ndarray, expected: np.ndarray | np.bool) -> None:
-    """Compare lines x samples with what the standard expects."""
+def _check(what: str, seen: np.ndarray, expected: np.ndarray | np.bool, rule: str) -> None:
+    """Compare lines x samples with what the standard expects; the rule says the same in words."""
     wrong = seen != expected
     if not wrong.any():
         return
     line, sample = np.unravel_index(np.argmax(wrong), wrong.shape)
     level = int(np.broadcast_to(expected, wrong.shape)[line, sample])
+    (top, left), (bottom, right) = (ends(np.argwhere(wrong), axis=0) for ends in (np.min, np.max))
     raise VideoError(
-        f"line {line}, sample {sample}: {what} is {1 - level}, expected {level}; {wrong.sum()} samples are wrong"
+        f"line {line}, sample {sample}: {what} is {1 - level}, expected {level}; {wrong.sum()} samples are wrong, in "
+        f"lines {top} to {bottom} and samples {left} to {right} (counted from the leading edges of VS and HS); "
+        f"{what} must be {rule}"
     )

@@ -363,13 +363,18 @@ def summary(outcomes: list[Outcome], outputs: Path) -> str:
 def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: str, console: Console) -> None:
     """Print the command that traces the first wrong pixel of each scene.
 
-    A trace needs a scene that is not built in, and a design with one pixel per clock.
+    A trace needs a scene that is not built in, and a design with one pixel per clock; if not, say so.
     """
     for outcome in outcomes:
         configuration = outcome.run.configuration
         if outcome.result is None or not outcome.result["wrong_vs_golden"]:
             continue
         if configuration.fixed or configuration.pixels > 1:
+            option = "FIX" if configuration.fixed else "PIXELS=2"
+            console.print(
+                f"{outcome.run.path.stem}: a design with {option} is not traced; try the scene without {option}",
+                soft_wrap=True,
+            )
             continue
         column, row = outcome.result["first_wrong_ray"]
         asked = {"pixel": f"{column},{row}", **options}

@@ -14,11 +14,12 @@ import pytest
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 from cocotb_tools.runner import get_runner
+from PIL import Image
 
 from raycaster.configuration import configure
 from raycaster.convert.write import write_verilog
 from raycaster.golden.engines import model_of
-from raycaster.golden.picture import shown
+from raycaster.golden.picture import describe_difference, diff_picture, shown
 from raycaster.scene import find_scene, load_scene
 from raycaster.sim.avalon import AvalonBus
 from raycaster.sim.simulator import find_tool
@@ -51,7 +52,10 @@ async def frame_is_golden(dut):
         pass
     golden = shown(model_of(CONFIG).render(SCENE, CONFIG.screen_geometry), CONFIG)
     frame = await visible_pixels(dut, golden.shape[:2])
-    assert (frame != golden).sum() == 0
+    if difference := describe_difference(frame, golden):
+        diff = Path("diff.png").resolve()
+        Image.fromarray(diff_picture(frame, golden)).save(diff)
+        raise AssertionError(f"{difference}; {diff} has all of them in pink")
 
 
 @pytest.mark.parametrize("simulator", ["icarus", "verilator"])

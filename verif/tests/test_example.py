@@ -11,6 +11,7 @@ import pytest
 from conftest import ROOT, TINY, run_tool
 
 from raycaster.convert.write import write_verilog
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.seed_engine import SeedModel
 from raycaster.scene import load_scene
 from raycaster.tools import find_program
@@ -117,5 +118,13 @@ def test_cocotb_picture(simulator, fault, waves, tmp_path):
     """The documented cocotb test runs outside the project and writes waveforms; a wrong picture fails it."""
     # In the project, cocotb finds the modules of verif/tests first.
     assert not list((ROOT / "verif" / "tests").rglob("test_cocotb_picture.py"))
-    run_outside(tmp_path, "cocotb_picture", fault, "-k", simulator)
-    assert (tmp_path / "build" / "cocotb_picture" / simulator / waves).is_file()
+    said = run_outside(tmp_path, "cocotb_picture", fault, "-k", simulator)
+    output = tmp_path / "build" / "cocotb_picture" / simulator
+    assert (output / waves).is_file()
+    assert (output / "diff.png").is_file() == bool(fault)
+    # The fault turns the golden picture into its negative.
+    scene, screen = load_scene(ROOT / "scenes" / "boxes.toml"), TINY["exact"].screen_geometry
+    corner = ExactModel().render(scene, screen)[0, 0]
+    colour, negative = bytes(corner).hex(), bytes(255 - corner).hex()
+    first = f"12,288 of 12,288 pixels are wrong; the first, at column 0 of line 0, is #{colour}, expected #{negative}"
+    assert not fault or f"{first}; {output / 'diff.png'} has" in said

@@ -17,6 +17,7 @@ from raycaster.configuration import OPTIONS as DESIGN_OPTIONS
 from raycaster.configuration import configure
 from raycaster.design import Design, design_for, left_out, packaged_for
 from raycaster.engines.engine import LOOKS
+from raycaster.fit.fixing import fix
 from raycaster.output import Console, emptied, replaced
 from raycaster.scene import load_scene, packaged_scenes
 from raycaster.sim import scenes as simulate
@@ -177,6 +178,18 @@ def test_a_wrong_pixel_fails(tmp_path):
     command = f"raycaster trace {SMALL_SCENE} --pixel 0,0 {OPTIONS}"
     for text in ("pixels are wrong", str(output / "sim.log"), str(output / "diff.png"), command):
         assert text in said
+
+
+@pytest.mark.parametrize("option", ["FIX", "PIXELS=2"])
+def test_what_cannot_be_traced(option, capsys):
+    """A wrong pixel of a design that the trace does not know leads to one that it knows."""
+    if option == "FIX":
+        design = fix(SMALL_SCENE, {"screen": "tiny"}, "all").design
+    else:
+        design = design_for(SMALL_SCENE, {"screen": "tiny", "engine": "beam", "pixels": 2})
+    outcome = Outcome(design, {"wrong_vs_golden": 1, "first_wrong_ray": [1, 2]})
+    simulate.show_traces([outcome], {}, "icarus", Console())
+    assert capsys.readouterr().out == f"small: a design with {option} is not traced; try the scene without {option}\n"
 
 
 def test_a_scene_chooses_what_it_needs(tmp_path):
