@@ -11,11 +11,23 @@ from rich.text import Text
 from raycaster.complaints import as_typed
 from raycaster.configuration import CHANNEL_BITS
 from raycaster.debug.probes.engines import description_of
-from raycaster.debug.probes.ray import Number, Place, Probe, Ray, Reading, Value, channels_of, first_difference, read
+from raycaster.debug.probes.ray import (
+    Number,
+    Place,
+    Probe,
+    Ray,
+    Reading,
+    Value,
+    channels_of,
+    first_difference,
+    packed,
+    read,
+)
 from raycaster.debug.recorder import add_recording_options, build_and_record, pixel_place
 from raycaster.debug.waves import Waves
 from raycaster.design import design_for
 from raycaster.errors import UserError
+from raycaster.golden.picture import colour_text
 from raycaster.options import CommandParser, given_options
 from raycaster.output import Console, Table, printable
 
@@ -47,17 +59,23 @@ def show(ray: Ray, readings: Sequence[Reading], console: Console) -> None:
         "*: what the ray sees. left out: culled, as the ray cannot see it. exact: without rounding.", style="dim"
     )
     if first is None:
-        console.print("The hardware agrees with the golden model.")
+        console.print(
+            "The hardware agrees with the golden model in every value of this pixel. Not compared: other pixels, and "
+            "HS, VS and blanking outside it, which `raycaster sim` checks.",
+            soft_wrap=True,
+        )
         return
     console.print(difference_line(ray, first), style=WRONG, soft_wrap=True)
 
 
 def difference_line(ray: Ray, reading: Reading) -> str:
     """Describe a difference between the hardware and the golden model in one line."""
-    part = reading.wrong or 0
-    quantity = ", ".join((reading.probe.quantity, *reading.probe.parts[part : part + 1]))
-    golden = _one(ray, reading.probe, part, reading.golden[part])
-    found = _one(ray, reading.probe, part, reading.found[part])
+    part, probe = reading.wrong or 0, reading.probe
+    quantity = ", ".join((probe.quantity, *probe.parts[part : part + 1]))
+    golden, found = (
+        _text(ray, probe, values, like=reading.golden) if probe.is_channels else _one(ray, probe, part, values[part])
+        for values in (reading.golden, reading.found)
+    )
     of = "the ray" if reading.place.bounce == 0 else f"reflection {reading.place.bounce}"
     if reading.probe.event in PIXEL_EVENTS:
         of = "the pixel"
@@ -136,13 +154,21 @@ def _found(ray: Ray, reading: Reading, first: Reading | None) -> Text:
 def _text(ray: Ray, probe: Probe, values: Sequence[Value], like: Sequence[Value] | None = None) -> str:
     """Format values; a dash stands for don't care."""
     likes = values if like is None else like
+    if probe.is_channels and None not in likes:
+        whole, bits = [value for value in values if isinstance(value, int)], _bits(ray, probe)
+        return _colour(packed(whole, bits), bits) if len(whole) == len(values) else "unknown"
     pairs = enumerate(zip(values, likes, strict=True))
     return ", ".join("-" if hint is None else _one(ray, probe, number, value) for number, (value, hint) in pairs)
 
 
 def _colour(value: int, bits: int) -> str:
     """Format a colour with this many bits per channel as #rrggbb."""
-    return "#" + "".join(f"{channel << (CHANNEL_BITS - bits):02x}" for channel in channels_of(value, bits))
+    return colour_text(channel << (CHANNEL_BITS - bits) for channel in channels_of(value, bits))
+
+
+def _bits(ray: Ray, probe: Probe) -> int:
+    """Bits per channel of a probe's colours."""
+    return ray.config.colour_bits if probe.narrow else CHANNEL_BITS
 
 
 def _one(ray: Ray, probe: Probe, number: int, value: Value) -> str:
@@ -151,7 +177,7 @@ def _one(ray: Ray, probe: Probe, number: int, value: Value) -> str:
     if isinstance(value, str):
         return value
     if probe.is_colour(number):
-        return _colour(int(value), ray.config.colour_bits if probe.quantity.startswith("pixel") else CHANNEL_BITS)
+        return _colour(int(value), _bits(ray, probe))
     if probe.scale and ray.config.fraction_bits:
         return f"{int(value) / (1 << ray.config.fraction_bits):g}"
     return str(int(value))

@@ -7,18 +7,17 @@ that the hardware's own blocks declare say when a column reaches each stage.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.debug.probes import AXES, COLOURS, DUT, fields, numbered
 from raycaster.debug.probes.exact import fraction
 from raycaster.debug.probes.ray import Description, Event, Place, Probe, Ray, Read, Value, channels_of
-from raycaster.debug.probes.units import RECT_FIELDS, monitor_probes, scene_probes, shown_events
+from raycaster.debug.probes.units import indexed, monitor_probes, rect_probe, scene_probes, shown_events
 from raycaster.debug.waves import Samples, signed
 from raycaster.engines import beam
-from raycaster.golden.rays import primary_slopes
 from raycaster.rtl.common import records
-from raycaster.rtl.common.widths import factor_bits, index_bits, walk_bits
+from raycaster.rtl.common.widths import factor_bits, index_bits
 
 RENDERER = f"{DUT}.beam_renderer_i"
 CASTER = f"{RENDERER}.beam_caster_i"
@@ -31,6 +30,9 @@ EXTENT = ((1, 2), (0, 2), (1, 0))
 """Axes p and q by the plane's axis: p is y unless y is the plane's axis, so that only p changes along a row."""
 
 BOUNDS = ("low_p", "high_p", "low_q", "high_q")
+
+Slope = Callable[[Ray], Sequence[int]]
+"""Function for a slope that a row's products are computed with."""
 
 
 def products(ray: Ray, rectangle: int, slopes: Sequence[int]) -> tuple[int, int, list[int]]:
@@ -49,23 +51,36 @@ def distance(ray: Ray, rectangle: int) -> int:
     return position - ray.scene.camera.position[axis]
 
 
-def setup_facet(ray: Ray, place: Place) -> Sequence[Value]:
-    """Facet fields, shared by all columns of the row."""
+def setup_facet(ray: Ray, place: Place) -> Mapping[str, Value]:
+    """Facet fields that `Ray.rect_fields` lacks, shared by all columns of the row."""
     _, way_q, _ = products(ray, place.index, ray.of_ray(0, "slopes"))
-    axis = int(ray.rectangles.axes[place.index])
-    return 1, axis, distance(ray, place.index), way_q, ray.colour(place.index)
+    return {"usable": 1, "distance": distance(ray, place.index), "way_q": way_q}
 
 
-def setup_start(ray: Ray, place: Place) -> Sequence[Value]:
-    """The products of the row's first column."""
-    first = primary_slopes(ray.config.screen_geometry)[ray.row, 0].tolist()
-    way_p, _, ends = products(ray, place.index, first)
-    return way_p, *ends
+def walk_of(slope: Slope) -> Read:
+    """Make a reader of a rectangle's products with a slope, as `Walk` lays them out."""
+
+    def read(ray: Ray, place: Place) -> Sequence[Value]:
+        way_p, way_q, ends = products(ray, place.index, slope(ray))
+        return way_p, *(way_q,) * ray.config.turn, *ends
+
+    return read
 
 
-def way_p(ray: Ray, place: Place) -> Sequence[Value]:
-    """The column's way along p; for the camera ray it is read a cycle later, with the bounds."""
-    return products(ray, place.index, ray.of_ray(0, "slopes"))[:1]
+def first_slope(ray: Ray) -> Sequence[int]:
+    """Slope of the row's first column."""
+    return ray.row_slopes[0].tolist()
+
+
+def growth_of_slope(ray: Ray) -> Sequence[int]:
+    """Change of the slope per column."""
+    return (ray.row_slopes[1] - ray.row_slopes[0]).tolist()
+
+
+def ways(ray: Ray, place: Place) -> Sequence[Value]:
+    """The column's ways along p and, if the camera turns, along q."""
+    way_p, way_q, _ = products(ray, place.index, ray.of_ray(0, "slopes"))
+    return (way_p, way_q) if ray.config.turn else (way_p,)
 
 
 def mirrored(ray: Ray, place: Place) -> Sequence[Value] | None:
@@ -78,6 +93,11 @@ def turned(ray: Ray, place: Place) -> Sequence[Value] | None:
     """Flags of the axes along which the folded ray runs backwards; None for an axis along which it does not move."""
     slopes = zip(ray.of_ray(place.bounce, "slopes"), ray.of_ray(0, "slopes"), strict=True)
     return [int(slope != before) if before else None for slope, before in slopes] if place.bounce else None
+
+
+def of_camera(read: Read, *, reflected: bool = False) -> Read:
+    """Restrict a reader to rays from the camera, or to reflected ones."""
+    return lambda ray, place: read(ray, place) if bool(place.bounce) == reflected else None
 
 
 def met(ray: Ray, place: Place) -> Sequence[Value] | None:
@@ -115,6 +135,7 @@ class BeamProbes(Description):
     event_names: Mapping[str, tuple[str, str]] = {
         "column": ("column announced", f"{RENDERER}.scan_next_column"),
         "load": ("rectangle set up", f"{SETUP}.load"),
+        "grow": ("change per column set up", f"{SETUP}.load"),
         "shown": ("pixel shown", f"{VIDEO}.y"),
     }
 
@@ -160,7 +181,8 @@ class BeamProbes(Description):
         return Probe(
             "channels, joined", tuple(f"{BLEND}.{name}.{port}" for name in names), "done" if mixes else "blend",
             lambda ray, place: ray.channels(place) if mixes or not place.bounce else None,
-            late=0 if mixes else 1, decode=lambda ray, place, *sums: [one >> low for one in sums], parts=COLOURS
+            late=0 if mixes else 1, decode=lambda ray, place, *sums: [one >> low for one in sums], parts=COLOURS,
+            narrow=True,
         )  # fmt: skip
 
     def controls(self) -> Iterable[str]:
@@ -174,6 +196,8 @@ class BeamProbes(Description):
         yield "column", Place(0)
         for rectangle in range(len(ray.rectangles)):
             yield "load", Place(0, rectangle)
+            if self.config.turn:
+                yield "grow", Place(0, rectangle)
         yield "shown", Place(ray.reflections)
 
     def events(self, samples: Samples, ray: Ray) -> list[Event]:
@@ -193,13 +217,18 @@ class BeamProbes(Description):
             passed += 1
         if column is None:
             return shown_events(samples, ray, VIDEO, 0)
-        events = [Event("column", column, Place(0))]
+        events = [Event("column", column, Place(0)), Event("line", line, Place(0))]
         count = len(ray.rectangles)
+        loaded: set[int] = set()
         for cycle in range(line, column):
             index, load = values[f"{RENDERER}.rects_index"][cycle], values[f"{SETUP}.load"][cycle] or 0
             if values[f"{RENDERER}.rects_fetch"][cycle] and index in range(count):
                 events.append(Event("fetch", cycle, Place(0, index)))
-            events += [Event("load", cycle, Place(0, i)) for i in range(count) if load >> i & 1]
+            for i in range(count):
+                if load >> i & 1:
+                    # If the camera turns, a second sweep computes the changes per column.
+                    events.append(Event("grow" if i in loaded else "load", cycle, Place(0, i)))
+                    loaded.add(i)
         end = column + self.starts[-1] + beam.winner_latency(self.config) + beam.cell_latency(self.config)
         for bounce, start in enumerate(self.starts[: ray.reflections + 1]):
             entered = column + start
@@ -218,10 +247,13 @@ class BeamProbes(Description):
     def probes(self) -> list[Probe]:
         """Probes in the order in which values depend on each other."""
         config = self.config
-        facet, walk = records.facet_of(config), records.Walk(walk_bits(config))
+        facet, walk = records.facet_of(config), records.walk_of(config)
         sight = (records.Sight if config.patterns else records.Winner)(index_bits(config))
-        plain = [name for name in facet.layout if name not in ("mirror", "kind", "cell", "colour_2")]
         last, passes = beam.rounds(config) - 1, len(self.starts)
+        start, lead = fields(SETUP, "start", walk.layout, walk), -beam.fold_lead(config)
+        moving = AXES if config.turn else "y"
+        way = "way p, q" if config.turn else "way p"
+        along = tuple(f"{{walker}}.way_{side}" for side in "pq"[: 1 + config.turn])
         candidate, fold, reflector = records.candidate_of(config), records.fold_of(config), records.Reflector()
         look = records.Look(config.materials, config.patterns)
         rounds = [
@@ -231,36 +263,34 @@ class BeamProbes(Description):
         ]  # fmt: skip
         reflected = [
             Probe("shifted by", fields("{fold}", "fold", [f"shift_{axis}" for axis in AXES], fold), "ray", mirrored,
-                signed=True, parts=AXES),
+                late=lead, signed=True, parts=AXES),
             Probe("runs back", fields("{fold}", "fold", [f"back_{axis}" for axis in AXES], fold), "ray", turned,
-                parts=AXES),
+                late=lead, parts=AXES),
             Probe("last mirror", fields("{fold}", "fold", ("axis", "distance"), fold), "ray",
-                lambda ray, place: met(ray, Place(place.bounce - 1)) if place.bounce else None, signed=(1,),
-                shown=False),
+                lambda ray, place: met(ray, Place(place.bounce - 1)) if place.bounce else None, late=lead,
+                signed=(1,), shown=False, parts=("axis", "distance")),
         ]  # fmt: skip
         kept = [
             Probe("mirror", fields("{mirror}", "last", ("axis", "distance"), reflector), "winner",
-                of_mirrors(passes, met), late=1, signed=(1,), shown=False),
+                of_mirrors(passes, met), late=1, signed=(1,), shown=False, parts=("axis", "distance")),
             Probe("kept", fields("{kept}", "late", ("valid", "index"), sight), "kept",
                 of_mirrors(passes, nearest_of(0)), shown=False),
         ]  # fmt: skip
         return [
-            *scene_probes("column", self.config),
-            Probe("rectangle", fields(f"{DUT}.rect_mem_i", "rects_rect", RECT_FIELDS, records.rect_of(config)), "fetch",
-                Ray.sorted_rect, late=2, colour=(6,), shown=False),
-            Probe("set up", fields(SETUP, "facet", plain, facet), "load", setup_facet, signed=(2, 3),
-                shown=False),
-            Probe("products of the first column", fields(SETUP, "start", walk.layout, walk), "load", setup_start,
-                signed=True, shown=False),
+            *scene_probes("line", self.config),
+            rect_probe("rectangle", f"{DUT}.rect_mem_i", "rects_rect", records.rect_of(config), "fetch", indexed,
+                late=2),
+            *(self._aim_probes() if config.turn else []),
+            rect_probe("set up", SETUP, "facet", facet, "load", indexed, more=setup_facet),
+            Probe("products of the first column", start, "load", walk_of(first_slope), signed=True, shown=False,
+                parts=tuple(walk.layout)),
             Probe("in the pipeline", (f"{LANE}.steps",), "ray", lambda ray, place: (1,), shown=False,
                 decode=lambda ray, place, steps: (steps >> (self.starts[place.bounce] - 1) & 1,)),
-            Probe("slope along y", ("{beam}.straight_y",), "ray", lambda ray, _: ray.of_ray(0, "slopes")[1:2],
-                signed=True),
+            Probe(f"slope along {', '.join(moving)}", fields("{beam}.slope_walker_i", "slope", moving), "ray",
+                lambda ray, _: [ray.of_ray(0, "slopes")[AXES.index(axis)] for axis in moving], signed=True),
             *(reflected if passes > 1 else []),
-            Probe("way p", ("{walker}.way_p",), "test",
-                lambda ray, place: None if place.bounce else way_p(ray, place), late=1, signed=True),
-            Probe("way p", ("{walker}.way_p",), "test",
-                lambda ray, place: way_p(ray, place) if place.bounce else None, signed=True),
+            Probe(way, along, "test", of_camera(ways), late=1, signed=True),
+            Probe(way, along, "test", of_camera(ways, reflected=True), signed=True),
             Probe("bounds p, q", tuple(f"{{walker}}.{name}" for name in BOUNDS), "test",
                 lambda ray, place: products(ray, place.index, ray.of_ray(0, "slopes"))[2], late=1, signed=True),
             Probe("inside", fields("{tester}", "hit", ("valid",), candidate), "test", Ray.hit,
@@ -274,10 +304,33 @@ class BeamProbes(Description):
             Probe("found", ("{look}.found",), "blend", Ray.found),
             Probe("its colour", fields("{look}", "look", ("colour",), look), "blend",
                 Ray.found_colour, colour=True),
+            *(self._pattern_probes() if config.patterns else []),
             Probe("colour seen", fields("{seen}", "shade", COLOURS, records.shade_of(config)), "blend",
                 seen_channels, late=1, parts=COLOURS),
             *([self._joined()] if passes > 1 else []),
             Probe("pixel", fields(BLEND, "pixel", COLOURS, records.Pixel(config.colour_bits)), "done", Ray.channels,
-                parts=COLOURS),
+                parts=COLOURS, narrow=True),
             *monitor_probes(RENDERER, "shown", VIDEO, config),
+        ]  # fmt: skip
+
+    def _aim_probes(self) -> list[Probe]:
+        """Probes of a turned camera's line: its first ray, the change per column, and the products with that."""
+        aim = tuple(f"{CASTER}.line_starter_i.aim_{axis}" for axis in AXES)
+        walk = records.walk_of(self.config)
+        return [
+            Probe("first ray of the row", aim, "load", lambda ray, _: first_slope(ray), signed=True, shown=False,
+                parts=AXES),
+            Probe("change per column", aim, "grow", lambda ray, _: growth_of_slope(ray), signed=True, shown=False,
+                parts=AXES),
+            Probe("products of the change", fields(SETUP, "start", walk.layout, walk), "grow",
+                walk_of(growth_of_slope), signed=True, shown=False, parts=tuple(walk.layout)),
+        ]  # fmt: skip
+
+    def _pattern_probes(self) -> list[Probe]:
+        """Probes of the hit point's cell and colour."""
+        painter = "{look}.pattern_colour_i"
+        return [
+            Probe("odd cell u, v", (f"{painter}.odd_u", f"{painter}.odd_v"), "blend", Ray.cell_seen, shown=False,
+                module="hit_cells"),
+            Probe("colour there", (f"{painter}.colour",), "blend", Ray.own_colour, colour=True, shown=False),
         ]  # fmt: skip

@@ -17,16 +17,17 @@ from typing import Any, SupportsInt
 import numpy as np
 
 from raycaster.configuration import CHANNEL_BITS
-from raycaster.debug.probes import DUT, PINS, module_of
+from raycaster.debug.probes import COLOURS, DUT, PINS, module_of
 from raycaster.debug.waves import Samples, Waves, signed
 from raycaster.design import Design
 from raycaster.errors import UserError
+from raycaster.golden.colour import hit_colours
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import shown
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.scene import BASIS_SCALE, UNTURNED
+from raycaster.scene import BASIS_SCALE, CELLS, UNTURNED
 
 VIDEO_SIGNALS = ("x:signed", "y:signed", *(f"{pin}:hex" for pin in PINS), "vga_hs", "vga_vs", "vga_blank_n", "vga_clk")
 BUS_SIGNALS = (
@@ -92,6 +93,7 @@ class Probe:
         true: value without any rounding, if rounding can change it.
         scale: True if the values are in units of 2^-F.
         colour: True if the values are colours, or the indices of those that are.
+        narrow: True if colours have the design's bits per channel instead of 8.
         parts: names of the values, if the quantity does not name them.
         module: module that a difference is blamed on, if not the one that contains the signal.
         shown: True if the table shows the value even when it is right.
@@ -107,9 +109,15 @@ class Probe:
     true: Callable[[Ray, Place], Sequence[Number]] | None = None
     scale: bool = False
     colour: bool | tuple[int, ...] = False
+    narrow: bool = False
     parts: Sequence[str] = ()
     module: str = ""
     shown: bool = True
+
+    @property
+    def is_channels(self) -> bool:
+        """True if the values are the channels of one colour."""
+        return tuple(self.parts) == COLOURS
 
     def is_signed(self, number: int) -> bool:
         """True if the signal with this index is in two's complement."""
@@ -237,10 +245,12 @@ class Ray:
         self.reflections = design.reflections
         self.rectangles = Rectangles.of_scene(self.scene)
         basis = self.scene.camera.basis
-        slopes = primary_slopes(screen, basis)[row, column][None]
+        self.row_slopes = primary_slopes(screen, basis)[row]
+        """int64 (columns, 3): slopes of the primary rays of the pixel's row, as long as in the hardware."""
         if self.config.turn and basis == UNTURNED:
             # The golden model uses shorter slopes then; the hardware scales them as for any other basis.
-            slopes = slopes * BASIS_SCALE
+            self.row_slopes = self.row_slopes * BASIS_SCALE
+        slopes = self.row_slopes[column][None]
         arguments = self.rectangles, self.scene.camera.position, self.scene.background, slopes, design.reflections
         self.true, self.golden = (
             model.trace(*arguments, light=self.scene.light, keep=True)
@@ -275,7 +285,9 @@ class Ray:
         """Return the nearest of some rectangles at a bounce, -1 for none."""
         bounce = self.golden.bounces[number]
         hits = [i for i in candidates if i < len(self.rectangles) and bounce.hits[i, 0]]
-        return min(hits, key=lambda i: (Fraction(int(bounce.depths[i, 0]), int(bounce.scales[i, 0])), i), default=-1)
+        # Only the seed engine compares depths along x, which are 0 for all hits of a ray that runs across x.
+        ways = bounce.depths if self.config.facts.divides else bounce.numerators
+        return min(hits, key=lambda i: (Fraction(int(ways[i, 0]), int(bounce.scales[i, 0])), i), default=-1)
 
     def colour(self, rectangle: int) -> int:
         """Return a rectangle's colour, or the background for -1: 24 bits, red highest, blue lowest."""
@@ -297,10 +309,39 @@ class Ray:
         """Return the start of a ray."""
         return self.of_ray(place.bounce, "origins")
 
-    def sorted_rect(self, place: Place) -> Sequence[Value]:
-        """Return a rectangle's fields as the hardware sorts them."""
-        axis, position, bounds = self.plane(place)
-        return axis, position, *bounds, self.colour(place.index)
+    def rect_fields(self, index: int) -> Mapping[str, int]:
+        """Return a rectangle's fields, as the hardware sorts and codes them, by the names in its records."""
+        axis, position, bounds = self.plane(Place(0, index))
+        rectangles = self.rectangles
+        return {
+            "axis": axis, "position": position,
+            **dict(zip(("u_low", "u_high", "v_low", "v_high"), bounds, strict=True)),
+            "colour": self.colour(index), "mirror": int(rectangles.mirrors[index]),
+            "kind": int(rectangles.kinds[index]), "cell": CELLS.index(int(rectangles.cells[index])),
+            "colour_2": packed(rectangles.colours_2[index], CHANNEL_BITS),
+        }  # fmt: skip
+
+    def cell_parity(self, index: int, point: Sequence[int], scale: int) -> tuple[int, int]:
+        """Return the lowest bits of the numbers of a rectangle's cell along u and v, at a point in units of 1/scale."""
+        size = scale * int(self.rectangles.cells[index])
+        u, v = OTHER_AXES[int(self.rectangles.axes[index])]
+        return int(point[u]) // size % 2, int(point[v]) // size % 2
+
+    def cell_seen(self, place: Place) -> Sequence[Value] | None:
+        """Return the `cell_parity` of the point that a ray hit; None without a hit or a pattern."""
+        winner = self.winner(place.bounce)
+        if winner < 0 or not self.rectangles.kinds[winner]:
+            return None
+        points, denominators = self.golden.points[place.bounce], self.golden.denominators[place.bounce]
+        return self.cell_parity(winner, points[0], int(denominators[0]))
+
+    def own_colour(self, place: Place) -> Sequence[Value] | None:
+        """Return the colour, with pattern but without shadow, at the point that a ray hit; None for a miss."""
+        if self.winner(place.bounce) < 0:
+            return None
+        names = ("winners", "points", "denominators")
+        hit = (getattr(self.golden, name)[place.bounce] for name in names)
+        return (packed(hit_colours(self.rectangles, self.scene.background, *hit)[0], CHANNEL_BITS),)
 
     def slope_signs(self, place: Place) -> Sequence[Value]:
         """Return the signs of the slope's components, 1 if negative; None for a component that is 0."""
@@ -373,7 +414,7 @@ def read(waves: Waves, description: Description, ray: Ray) -> list[Reading]:
             if probe.event != event.kind or not (ray.alive(event.place.bounce) or event.kind in OF_LOST_RAYS):
                 continue
             golden, cycle = tuple(probe.golden(ray, event.place) or ()), event.cycle + probe.late
-            if any(value is not None for value in golden) and cycle < len(samples.times_ns):
+            if any(value is not None for value in golden) and 0 <= cycle < len(samples.times_ns):
                 names = tuple(description.named(signal, event.place) for signal in probe.signals)
                 found.append((replace(probe, signals=names), event.place, cycle, golden))
     readings = []

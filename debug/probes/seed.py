@@ -10,7 +10,7 @@ import numpy as np
 from raycaster.configuration import CHANNEL_BITS
 from raycaster.debug.probes import AXES, fields
 from raycaster.debug.probes.ray import Number, Place, Probe, Ray, Read, Value, packed
-from raycaster.debug.probes.units import RECT_FIELDS, SIGNS, UnitProbes
+from raycaster.debug.probes.units import SIGNS, UnitProbes, indexed, rect_probe
 from raycaster.golden.colour import hit_colours
 from raycaster.golden.world import OTHER_AXES
 from raycaster.rtl.common.records import Origin, rect_of
@@ -44,6 +44,13 @@ def colour_there(ray: Ray, place: Place) -> Sequence[Value]:
     winner, point = np.array([place.index]), np.array([ray.of_rectangle(place, "points")])
     colours = hit_colours(ray.rectangles, ray.scene.background, winner, point, 1 << ray.config.fraction_bits)
     return (packed(colours[0], CHANNEL_BITS),)
+
+
+def odd_cells(ray: Ray, place: Place) -> Sequence[Value] | None:
+    """Lowest bits of the numbers of the pattern's cell that is hit, along u and v; None without a hit or a pattern."""
+    if not (ray.of_rectangle(place, "hits") and ray.rectangles.kinds[place.index]):
+        return None
+    return ray.cell_parity(place.index, ray.of_rectangle(place, "points"), 1 << ray.config.fraction_bits)
 
 
 def found_colour(ray: Ray, place: Place) -> Sequence[Value] | None:
@@ -132,8 +139,7 @@ class SeedProbes(UnitProbes):
             Probe("signs", fields(self.unit, "ray", SIGNS, ray), "ray", Ray.slope_signs, late=1, parts=AXES),
             Probe("towards the plane", of_helpers("towards"), "find", towards, late=1, shown=False),
             Probe("product", of_helpers("product"), "load", products, shown=False),
-            Probe("rectangle at the end", fields(self.control, "offered", RECT_FIELDS, rect_of(self.config)), "store",
-                Ray.sorted_rect, late=1, colour=(6,), shown=False),
+            rect_probe("rectangle at the end", self.control, "offered", rect_of(self.config), "store", indexed, late=1),
             Probe("quotient u, v", of_helpers("divider_i.quotient"), "store", of_rectangle("quotients", "valid"),
                 late=1, scale=True),
             Probe("valid", of_helpers("valid"), "store", lambda ray, place: ray.of_rectangle(place, "valid"), late=1,
@@ -144,9 +150,20 @@ class SeedProbes(UnitProbes):
             Probe("depth", (f"{finder}.depth",), "write", of_rectangle("depths", "hits"), true=true_depth, scale=True),
             Probe("point", fields(finder, "point", AXES, point), "write", of_rectangle("points", "hits"), scale=True,
                 shown=False, parts=AXES),
+            *(self._pattern_probes(finder) if self.config.patterns else []),
             Probe("nearest", (f"{buffer}.nearest",), "write", of_nearest("depths"), late=1, scale=True),
             Probe("nearest surface", kept, "write", nearest_surface, late=1, colour=(1,), shown=False),
             Probe("nearest point", fields(buffer, "found_point", AXES, point), "write", of_nearest("points"), late=1,
                 scale=True, shown=False, parts=AXES),
             *self.last_probes(kept[-1], found_colour),
+        ]  # fmt: skip
+
+    def _pattern_probes(self, finder: str) -> list[Probe]:
+        """Probes of a hit point's cell and colour."""
+        odd = tuple(f"{finder}.cell_parity_{number}_i.odd" for number in range(2))
+        return [
+            Probe("odd cell u, v", odd, "write", odd_cells, shown=False),
+            Probe("colour there", (f"{self.unit}.pattern_colour_i.colour",), "write",
+                lambda ray, place: colour_there(ray, place) if ray.of_rectangle(place, "hits") else None, colour=True,
+                shown=False),
         ]  # fmt: skip

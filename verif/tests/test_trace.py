@@ -7,6 +7,7 @@ from __future__ import annotations
 import io
 import re
 from functools import cache
+from itertools import combinations, product
 from pathlib import Path
 
 import pytest
@@ -25,30 +26,83 @@ from raycaster.sim.monitor import CLOCK_NS
 from raycaster.sim.simulator import WINDOW_BENCH, build_model, convert
 
 SCENE = Path(__file__).with_name("tall.toml")
-LOOKS = {"materials": "1", "patterns": "1", "allow_underrun": "1"}
-OPTIONS = {
-    "seed": {"engine": "seed", "units": "8"},
-    "exact": {"engine": "exact", "units": "4"},
-    "beam": {"engine": "beam", "scale": "1"},
-    "seed-looks": {"engine": "seed", "units": "8", "culling": "0", "rounding": "nearest", **LOOKS},
-    "exact-looks": {"engine": "exact", "units": "4", **LOOKS},
-    "beam-looks": {"engine": "beam", "scale": "1", "reflections": "2", **LOOKS},
-    "exact-light": {"engine": "exact", "light": "1", "units": "8"},
-}
-LIGHT = "[light]\nposition = [20, 100, 250]\n"
 PIXEL = (48, 2)
-"""Column and row of a pixel where the post hides the wall and mirrors it."""
+"""Column and row, at scale 1, of a pixel where the post hides the wall and mirrors it."""
+
+CAMERA = "position = [20, 250, 100]"
+WALL = "corners = [[300, 60, 0], [300, 400, 500]]"
+POST = "corners = [[130, 270, 20], [200, 270, 300]]"
+PIECES = {
+    "turn": {CAMERA: CAMERA + "\nyaw = 1\npitch = -2\nroll = 2"},
+    "materials": {POST: POST + "\nmirror = 0.75"},
+    "patterns": {WALL: WALL + '\npattern = "checker"\ncolour2 = "#103010"\ncell = 8'},
+    "light": {'background = "#203040"': 'background = "#203040"\n[light]\nposition = [100, 255, 250]\nshade = 0.25'},
+    # The pixel's ray meets the wall and the post in one point.
+    "corner": {WALL: "corners = [[120, 60, 0], [120, 400, 500]]", POST: "corners = [[60, 266, 20], [120, 266, 300]]"},
+    # The corner of a camera that looks along y: no ray of the middle column moves along x.
+    "across": {
+        CAMERA: "position = [250, 20, 100]\nyaw = 90",
+        WALL: "corners = [[100, 120, 0], [440, 120, 500]]",
+        POST: "corners = [[234, 60, 20], [234, 120, 300]]",
+    },
+    "unculled": {},
+}
+"""Changes of the scene for each look, before those of another look."""
+
+GIVEN = {
+    "seed": {"engine": "seed", "units": "8"},
+    "exact": {"engine": "exact", "units": "8", "allow_underrun": "1"},
+    "beam": {"engine": "beam"},
+    # With a column that lasts several clocks.
+    "patterns": {"patterns": "1", "scale": "1"},
+    "materials": {"materials": "1", "rounding": "nearest"},
+    "corner": {"reflections": "2"},
+    "across": {"reflections": "2"},
+    "unculled": {"culling": "0"},
+}
+
+
+def looks(*names: str) -> list[str]:
+    """Return all choices of some looks, joined by dashes, the empty one first."""
+    return ["-".join(chosen) for count in range(len(names) + 1) for chosen in combinations(names, count)]
+
+
+DESIGNS = [
+    "-".join(filter(None, (engine, *more)))
+    for engine, more in [
+        *(("seed", more) for more in product(looks("materials", "patterns"), ["", "unculled"])),
+        *(("exact", (more,)) for more in looks("turn", "materials", "patterns", "light")),
+        *(("exact", (more,)) for more in ("corner", "across", "materials-patterns-light-corner", "unculled")),
+        *(("beam", (more,)) for more in looks("turn", "materials", "patterns")),
+        *(("beam", (more,)) for more in ("corner", "across", "materials-patterns-corner")),
+    ]
+]
+QUICK = ["seed]", "exact]", "exact-light]", "exact-across]", "beam-turn]", "beam-materials-patterns-corner]"]
+"""Designs of `make test`."""
 
 
 @cache
-def design(engine: str) -> Design:
-    """Return a design for a small scene on the tiny screen, which Icarus builds quickly."""
-    scene = SCENE
-    if "light" in OPTIONS[engine]:
-        scene = BUILD / "test" / "tall_light.toml"
-        scene.parent.mkdir(parents=True, exist_ok=True)
-        scene.write_text(SCENE.read_text() + LIGHT)
-    return design_for(scene, {"screen": "tiny", "rectangles": "3", **OPTIONS[engine]})
+def design(name: str) -> Design:
+    """Return a design for a small scene on the tiny screen, which Icarus builds quickly: an engine with some looks."""
+    engine, *chosen = name.split("-")
+    text = SCENE.read_text()
+    for before, after in [change for look in chosen for change in PIECES[look].items()]:
+        assert before in text
+        text = text.replace(before, after)
+    scene = BUILD / "test" / f"tall-{name}.toml"
+    scene.parent.mkdir(parents=True, exist_ok=True)
+    scene.write_text(text)
+    given = {key: value for part in (engine, *chosen) for key, value in GIVEN.get(part, {}).items()}
+    for option, engines in (("scale", ("beam",)), ("rounding", ("seed",))):
+        if engine not in engines:
+            given.pop(option, None)
+    return design_for(scene, {"screen": "tiny", "rectangles": "3", **given})
+
+
+def pixel(name: str) -> tuple[int, int]:
+    """Return the column and the row of `PIXEL` at the design's scale."""
+    scale = design(name).configuration.scale
+    return PIXEL[0] * scale, PIXEL[1] * scale
 
 
 def recorded(engine: str, directory: Path, edit: tuple[str, str, str] | None = None) -> Waves:
@@ -57,36 +111,41 @@ def recorded(engine: str, directory: Path, edit: tuple[str, str, str] | None = N
     if edit:
         sources = broken(sources, directory, *edit)
     model = build_model(design(engine).configuration, "icarus", build=directory, verilog=sources, bench=WINDOW_BENCH)
-    return Waves(record(model, design(engine), (PIXEL[1], PIXEL[1]), directory / "rows" / "row"))
+    return Waves(record(model, design(engine), (pixel(engine)[1],) * 2, directory / "rows" / "row"))
 
 
-def traced(waves: Waves, engine: str, column: int = PIXEL[0]) -> tuple[Ray, list[Reading]]:
-    """Return a pixel's golden ray and the readings from the hardware."""
-    ray = Ray(design(engine), PIXEL[1], column)
-    return ray, read(waves, description_of(design(engine).configuration, ray.unit), ray)
+def traced(waves: Waves, name: str, column: int | None = None) -> tuple[Ray, list[Reading]]:
+    """Return the golden ray and the readings from the hardware of the pixel, or of another one in its row."""
+    own, row = pixel(name)
+    ray = Ray(design(name), row, own if column is None else column)
+    return ray, read(waves, description_of(design(name).configuration, ray.unit), ray)
 
 
-@pytest.fixture(scope="module", params=OPTIONS)
+@pytest.fixture(scope="module", params=DESIGNS)
 def sound(request, tmp_path_factory) -> tuple[str, Waves]:
     """Return the name of a design, and a recording of it."""
     return request.param, recorded(request.param, tmp_path_factory.mktemp("sound"))
 
 
+@pytest.mark.slow_sets(quick=QUICK)
 def test_a_sound_design_has_no_difference(sound):
-    """No pixel of the row differs; both rays of the chosen pixel hit something."""
-    engine, waves = sound
-    for column in range(0, design(engine).configuration.screen_geometry.columns, 3):
-        ray, readings = traced(waves, engine, column)
+    """No pixel of the row differs; both rays of the chosen pixel hit something, and every value is read."""
+    name, waves = sound
+    quantities = set()
+    for column in [None, *range(2, design(name).configuration.screen_geometry.columns, 3)]:
+        ray, readings = traced(waves, name, column)
         first = first_difference(readings)
-        assert first is None, difference_line(ray, first)
-    ray, readings = traced(waves, engine)
-    assert [ray.winner(bounce) for bounce in (0, 1)] == [2, 1]
-    quantities = {reading.probe.quantity for reading in readings}
+        assert first is None, f"column {ray.column}: {difference_line(ray, first)}"
+        quantities |= {reading.probe.quantity for reading in readings}
+        if column is None:
+            at_once = {"corner", "across"} & {*name.split("-")}
+            assert [ray.winner(bounce) for bounce in (0, 1)] == ([1, 2] if at_once else [2, 1])
     # A value that is never read could never be wrong.
-    missing = {probe.quantity for probe in description_of(design(engine).configuration, ray.unit).probes} - quantities
+    missing = {probe.quantity for probe in description_of(design(name).configuration, ray.unit).probes} - quantities
     assert not missing, f"never read: {missing}"
 
 
+@pytest.mark.slow_sets(quick=QUICK)
 def test_window_has_its_rows_alone(sound):
     """It runs from the start of the row's computation until the row has been shown."""
     engine, waves = sound
@@ -97,11 +156,12 @@ def test_window_has_its_rows_alone(sound):
     assert [path.name for path in waves.path.parent.parent.iterdir()] == ["row"], "nothing half-written is left"
 
 
+@pytest.mark.slow_sets(quick=QUICK)
 def test_viewers_show_what_there_is(sound):
     """The waveform has every signal of the save files, with its width; groups are ordered and labels are unique; the
     cursor is where the pixel's ray starts; states have the names from the hardware's source."""
     engine, waves = sound
-    config, ray = design(engine).configuration, Ray(design(engine), PIXEL[1], PIXEL[0])
+    config, ray = design(engine).configuration, Ray(design(engine), *reversed(pixel(engine)))
     description = description_of(config, ray.unit)
     gtkwave, surfer = (path.read_text() for path in write_view(waves.path, design(engine), ray))
 
@@ -150,11 +210,13 @@ def test_values_have_names_and_colours_are_colours():
     def line(quantity: str, golden: tuple[int, ...], found: tuple[int, ...], rectangle: int | None = None) -> str:
         return difference_line(ray, Reading(probes[quantity], Place(0, rectangle), 0, 0, golden, found))
 
-    assert "pins, green is 9, expected 2;" in line("pins", (1, 2, 3), (1, 9, 3))
+    pins = line("pins", (1, 2, 3), (1, 9, 3))
+    assert "pins, green is #010903, expected #010203; " in pins and pins.endswith("vga_g")
+    assert "pins, red is unknown, expected #010203; " in line("pins", (1, 2, 3), (None, 2, 3))
     assert "origin, z is 7, expected 6;" in line("origin", (4, 5, 6), (4, 5, 7))
-    of_rectangle = ((0,) * 6 + (0xC8C8B4,), (0,) * 6 + (0xA00,), 0)
-    assert "rectangle is #000a00, expected #c8c8b4;" in line("rectangle", *of_rectangle)
-    assert "rectangle is 1, expected 0;" in line("rectangle", (0,) * 7, (1,) + (0,) * 6, 0)
+    of_rectangle = ((0, 0, 0xC8C8B4, 0, 0, 0, 0), (0, 0, 0xA00, 0, 0, 0, 0), 0)
+    assert "rectangle, colour is #000a00, expected #c8c8b4;" in line("rectangle", *of_rectangle)
+    assert "rectangle, axis is 1, expected 0;" in line("rectangle", (0,) * 7, (1,) + (0,) * 6, 0)
     narrow = Ray(design_for(SCENE, {"screen": "tiny", "units": "8", "rectangles": "3", "colour_bits": "4"}), 2, 48)
     pixel = Reading(probes["pixel"], Place(0), 0, 0, (0x1F0,), (0,))
     assert "pixel is #000000, expected #10f000;" in difference_line(narrow, pixel)
@@ -196,14 +258,52 @@ FAULTS = {
         ("ray_fold", "mirrored = ", "mirrored = 1 + "),
         ("colour_mean", "mean = ", "mean = 1 + "),
     ],
+    "seed-materials-patterns": [
+        ("cell_parity", "odd = value[(3 + each)]", "odd = value[(2 + each)]"),
+        ("pattern_colour", "second = odd_u != odd_v", "second = odd_u"),
+        ("colour_share", "half = weight >>> 1", "half = weight"),
+        ("video_generator", "vga_blank_n <= ", "vga_blank_n <= 0 && "),
+    ],
+    "exact-turn": [
+        ("camera_mem", "camera_word = whole", "camera_word = whole ^ 'h100"),
+        ("turned_generator", "column = group_start - 32", "column = group_start - 31"),
+        ("slope_component", "total = level + upward", "total = level - upward"),
+    ],
+    "exact-materials-patterns-light": [
+        ("cell_finder", "digits <= point[8:3]", "digits <= ~point[8:3]"),
+        ("pattern_colour", "second = odd_u != odd_v", "second = odd_u"),
+        ("shadow_ray", "facing <= light_a < found_surface_position", "facing <= light_a > found_surface_position"),
+        ("shadow_sequencer", "shadow_pass_start = (state == AIM)", "shadow_pass_start = (state == WAIT)"),
+        ("ray_switch", "tested_eye_y = camera_light_y", "tested_eye_y = eye_y"),
+        ("shadow_register", "reached < denominator", "reached > denominator"),
+        ("exact_unit", "dark = camera_light_on", "dark = 0 && camera_light_on"),
+        ("shade_colour", "red = shade * colour_red", "red = 3 * colour_red"),
+        ("colour_share", "half = weight >>> 1", "half = weight"),
+    ],
+    "beam-turn": [
+        ("camera_mem", "camera_word = whole", "camera_word = whole ^ 'h100"),
+        ("line_starter", "factor = -64", "factor = -63"),
+        ("rect_setup", "way_q = distance_2 * slope_q_2", "way_q = distance_2 + slope_q_2"),
+        ("slope_walker", "slope_z <= slope_z + aim_z", "slope_z <= slope_z - aim_z"),
+    ],
+    "beam-materials-patterns-corner": [
+        ("mirror_look_up", "facet_axis, ", "~facet_axis, "),
+        ("hit_cells", "axis_1 <= nearest_axis", "axis_1 <= 2"),
+        ("pattern_colour", "second = odd_u != odd_v", "second = odd_u"),
+        ("look_up", "found <= sight_valid", "found <= 1"),
+        ("colour_seen", "colour_word = seen_colour", "colour_word = ~seen_colour"),
+        ("colour_mix", "share = doubles + singles", "share = doubles"),
+    ],
 }
+"""Faults by design: the module, and a text of its Verilog with what replaces it."""
 
 
 @pytest.mark.slow_sets(
     quick=[
         "beam-colour_mean",
-        "beam-fold_tester",
+        "beam-turn-line_starter",
         "exact-rect_tester",
+        "exact-materials-patterns-light-shadow_register",
         "seed-divider",
         "seed-ray_mem",
         "seed-video_generator",
@@ -214,8 +314,10 @@ FAULTS = {
     [pytest.param(engine, edit, id=f"{engine}-{edit[0]}") for engine, edits in FAULTS.items() for edit in edits],
 )
 def test_names_the_module_of_a_fault(tmp_path, engine, edit):
-    """Each fault is planted alone, in a different module."""
-    ray, readings = traced(recorded(engine, tmp_path, edit), engine)
+    """Each fault is planted alone, in a different module; the first pixel that differs shows it."""
+    waves, count = recorded(engine, tmp_path, edit), design(engine).configuration.screen_geometry.columns
+    found = (traced(waves, engine, column) for column in [None, *range(2, count, 3)])
+    ray, readings = next(one for one in found if first_difference(one[1]) is not None)
     first = first_difference(readings)
     assert first is not None
     line = difference_line(ray, first)
