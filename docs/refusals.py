@@ -20,7 +20,7 @@ from raycaster.hdl.signals import bit, unsigned
 from raycaster.outcomes import table
 
 MODULE = """\
-from myhdl import Constant, Signal, always, always_comb, block, concat, instances, intbv
+from myhdl import ConcatSignal, Constant, Signal, always, always_comb, block, concat, instances, intbv
 
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, tied, unconnected, unsigned
@@ -131,6 +131,22 @@ REFUSALS = (
             _process("if a > b:\n    result.next = a\nelse:\n    result.next = b")),
     Refusal("return", _process("result.next = b\nif a == 0:\n    return  # refused\nresult.next = a"),
             _process("result.next = b\nif a != 0:\n    result.next = a")),
+    Refusal("latch", _process("if index[0]:\n    result.next = a  # refused"),
+            _process("result.next = b\nif index[0]:\n    result.next = a")),
+    Refusal("table", _process("result.next = a ^ numbers[index]  # refused", "numbers = (3, 1, 4, 1)\n"),
+            _process("result.next = a ^ looked_up", "numbers = (3, 1, 4, 1)\nlooked_up = unsigned(4)\n"
+                     "@always_comb\ndef look_up():\n    looked_up.next = numbers[index]\n")),
+    Refusal("copy", _process("result[4:2].next = index  # refused\nresult.next[2:] = index"),
+            _process("result.next[4:2] = index\nresult.next[2:] = index")),
+    Refusal("loop", _process("result.next = a\nfor i in range(index):  # refused\n    result.next = b"),
+            _process("result.next = a\nfor i in range(4):\n    if i < index:\n        result.next = b")),
+    Refusal("integer", _process("n = 0\nn = a * 4294967296  # refused\nresult.next = n >> 32"),
+            _process("n = intbv(0)[36:]\nn[:] = a * 4294967296\nresult.next = n >> 32")),
+    Refusal("words", "words = [unsigned(4) for _ in range(4)]  # refused\n"
+            "@always(clk.posedge)\ndef fill():\n    words[index].next = a\n"
+            "@always(clk.posedge)\ndef empty():\n    words[b[2:]].next = 0\n" + _process("result.next = words[index]"),
+            "words = [unsigned(4) for _ in range(4)]\n@always(clk.posedge)\ndef fill():\n    words[index].next = a\n"
+            "    words[b[2:]].next = 0\n" + _process("result.next = words[index]")),
     Refusal("rounded", _process("result.next = apart // 2  # refused", APART),
             _process("result.next = apart[5:1]", APART)),
     Refusal("undriven", _process("result.next = a ^ nothing", "nothing = unsigned(4)  # refused\n"),

@@ -138,6 +138,8 @@ class Contents:
         for name, known in block.memdict.items():
             if any(known.mem is one for one in lists) and all(known.mem is not one for one in self.memories.values()):
                 self.memories[name] = known.mem
+        for process in processes:
+            internals.check_statements(process)
         trees = iter(internals.analysed(processes))
         self.parts = [next(trees) if isinstance(part, Process) else part for part in parts]
         for part, tree in zip(parts, self.parts, strict=True):

@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from raycaster.hdl.internals import SignalType
+
 
 class UserError(Exception):
     """An error that the user can fix; its text is the one line that they see."""
@@ -32,12 +34,17 @@ def fault_in_block(error: BaseException, converters: tuple[str, ...] = ()) -> st
     modules = [frame.f_globals.get("__name__", "") for frame, _ in frames]
     if not any(module.startswith("myhdl.") for module in modules):
         return None
-    reason = f"{type(error).__name__}: {error}"
+    reason = re.sub(r"^\w+Error: ", "", str(error)) or "MyHDL does not support this"
+    if type(error).__module__.partition(".")[0] != "myhdl":
+        reason += f" ({type(error).__name__})"
     # While MyHDL analyses a process, the place is in the syntax tree; while code runs, it is in a frame.
-    values = [value for frame, _ in frames for value in frame.f_locals.values()]
+    # A signal whose making failed has no attributes.
+    values = [value for frame, _ in frames for value in frame.f_locals.values() if not isinstance(value, SignalType)]
     processes: list[Any] = [value.ast for value in values if hasattr(getattr(value, "ast", None), "sourcefile")]
     nodes = [value for value in values if isinstance(value, ast.stmt | ast.expr)]
     if processes and nodes:
+        if not isinstance(error, AttributeError) or isinstance(error.obj, ast.AST):
+            reason = f"MyHDL does not convert {ast.unparse(nodes[-1]).splitlines()[0]}; write it otherwise"
         return f"{processes[-1].sourcefile}:{processes[-1].lineoffset + nodes[-1].lineno}: {reason}"
     for (frame, line), module in zip(reversed(frames), reversed(modules), strict=True):
         if not module.startswith(("myhdl.", "raycaster.hdl.", *converters)):

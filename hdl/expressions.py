@@ -3,9 +3,9 @@
 
 MyHDL computes with integers of any size. Verilog computes a whole expression with the bits of its widest operand or of
 its target, and without signs if any operand has none. So each expression gets a context, a width and a sign: if it has
-a signed operand, all others are cast. The range of each operand is known. Where a result is compared, shifted to the
-right, divided or used as an index, a result that the context does not hold is refused. Elsewhere only its lowest bits
-count, and they are right for any widths: `total.next = a + b + c` is.
+a signed operand, all others are cast. The range of each operand is known. A result that is compared, shifted to the
+right, divided or used as an index is refused if the context does not hold it. Only the lowest bits of other results
+count, and they are right for any widths, as in `total.next = a + b + c`.
 """
 
 from __future__ import annotations
@@ -133,6 +133,18 @@ class Expressions:
             self.refuse(subject, "Verilog's case has numbers and states only; write if and elif")
         bits, signed = self._type(subject)
         return str(int(value)) if signed or value < 0 else f"{bits if value >= 1 << 30 else ''}'h{value:x}"
+
+    def part(self, target: Any) -> tuple[int, int] | None:
+        """Return the first of the bits that an assignment sets, and the one after them; None if they vary."""
+        at = target.value if isinstance(target, ast.Attribute) else target
+        bits, _ = self._type(at.value if isinstance(at, ast.Subscript) else at)
+        if not isinstance(at, ast.Subscript):
+            return 0, bits
+        if isinstance(at.slice, ast.Slice):
+            low = self.constant(at.slice.upper) if at.slice.upper else 0
+            return None if low is None else (low, low + self._width(at, bits))
+        index = self.constant(at.slice)
+        return None if index is None else (index, index + 1)
 
     def is_word(self, node: ast.Subscript) -> bool:
         """Return True for a word of a memory."""
@@ -444,11 +456,11 @@ class Expressions:
             case ast.UnaryOp(op=ast.Invert()):
                 own = self._own_bits(node.operand)
                 if own and own < (context.bits if needed is None else needed):
-                    text = f"{{~{self._root(node.operand, own)}}}"
+                    text = f"{{~{_primary(self._root(node.operand, own))}}}"
                     return f"$signed({{1'b0, {text}}})" if context.signed else text
-                text = f"(~{self._emit(node.operand, context, needed)})"
+                text = f"(~{_primary(self._emit(node.operand, context, needed))})"
             case ast.UnaryOp(op=ast.USub() | ast.UAdd() as op):
-                text = f"({SYMBOLS[type(op)]}{self._emit(node.operand, context, needed)})"
+                text = f"({SYMBOLS[type(op)]}{_primary(self._emit(node.operand, context, needed))})"
             case ast.IfExp():
                 parts = [self._emit(part, context, needed) for part in (node.body, node.orelse)]
                 text = f"({self._root(node.test, None)} ? {' : '.join(parts)})"
@@ -518,7 +530,7 @@ class Expressions:
                 return f"({f' {SYMBOLS[type(node.op)]} '.join(self._root(value, None) for value in node.values)})"
             case ast.UnaryOp(op=ast.Not()):
                 text = self._root(node.operand, None)
-                return f"!{text}" if re.fullmatch(r"\w+", text) else f"(!{text})"
+                return f"!{text}" if re.fullmatch(r"\w+", text) else f"(!{_primary(text)})"
             case ast.Call():
                 return self._call(node)
         self.refuse(node, f"Verilog has no {ast.unparse(node)}; write it otherwise")
@@ -715,6 +727,11 @@ def _shape(known: Any) -> tuple[int, bool]:
 def _all_of(known: Any) -> Range:
     bits, signed = _shape(known)
     return Range(-(1 << bits - 1), (1 << bits - 1) - 1) if signed else Range(0, (1 << bits) - 1)
+
+
+def _primary(text: str) -> str:
+    """Return an operand of a sign: Verilog has no two in a row."""
+    return f"({text})" if text.startswith("!") else text
 
 
 def _words(op: ast.AST) -> str:

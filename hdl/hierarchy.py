@@ -10,7 +10,7 @@ from __future__ import annotations
 import inspect
 import re
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -80,7 +80,7 @@ class _Converter:
             return self._copy(given, block)
         if block.verilog_code is not None:
             raise refusal(block, "verilog_code has no ports; write its text as a module, and use given_verilog")
-        kind, ports = _kind(block), block_ports(block)
+        kind, ports = _kind(block, self.driven), block_ports(block)
         for known, module in self.modules.items():
             if self._kinds[known] == kind and self._initial[known] == _initial(module, ports):
                 return module
@@ -194,7 +194,7 @@ class _Constant:
         return mine is its or ((mine == its) is True and repr(mine) == repr(its))
 
 
-def _kind(block: Block) -> tuple[Any, ...]:
+def _kind(block: Block, driven: Collection[int]) -> tuple[Any, ...]:
     """Return what determines a block's module: its function, its arguments, which ports are the same signal, and what
     its processes and the blocks in it begin with.
 
@@ -204,7 +204,9 @@ def _kind(block: Block) -> tuple[Any, ...]:
     numbers: dict[int, int] = {}
     ports = [id(signal) for signal in block_ports(block).values()]
     same = tuple(numbers.setdefault(port, number) for number, port in enumerate(ports))
-    return block.func, _description(block_arguments(block)), same, [*_beginnings(block, {*ports})]
+    # Signals that nothing drives are a table, whose contents count, unless they are connected as numbers.
+    tables = {id(one) for one in block_ports(block).values() if type(one) is SignalType} - {*driven}
+    return block.func, _description(block_arguments(block)), same, [*_beginnings(block, {*ports} - tables)]
 
 
 def _beginnings(block: Block, ports: set[int]) -> Iterator[Any]:

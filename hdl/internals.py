@@ -30,13 +30,6 @@ from myhdl.conversion._VHDLNameValidation import _vhdl_keywords as vhdl_keywords
 SOURCE_READERS = tuple((importlib.import_module(f"myhdl.{name}"), "_dedent") for name in ("_util", "_Waiter"))
 """Modules and names of the function that MyHDL calls to read a process's source."""
 
-__all__ = [
-    "SOURCE_READERS", "TRISTATE", "Block", "Constant", "DerivedClock", "EnumItemType", "Process", "ShadowSignal",
-    "SignalType", "SignedSlice", "SliceSignal", "Statements", "all_signals", "analysed", "assigned", "bits_of",
-    "declaration", "drivers_of", "is_memory", "keeps", "locals_of", "operands_of", "resets_of", "set_name", "slices_of",
-    "state_of", "states_by_name", "states_of", "table_of", "vhdl_keywords", "written_words",
-]  # fmt: skip
-
 
 class SignedSlice(SliceSignal):
     """Bits of a word that may be a two's complement number; MyHDL's own slices are unsigned."""
@@ -120,6 +113,19 @@ def analysed(processes: Iterable[Process]) -> list[Any]:
     return _analyzeGens(processes, {id(process): process.name for process in processes})
 
 
+def check_statements(process: Process) -> None:
+    """Refuse what MyHDL's analysis would misunderstand.
+
+    Raises:
+        SyntaxError: with the place of the first such thing.
+    """
+    tree = process.ast
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.AnnAssign, ast.NamedExpr, ast.With, ast.Delete)):
+            text = f"Verilog has no {ast.unparse(node).splitlines()[0]}; write it otherwise"
+            raise SyntaxError(text, (tree.sourcefile, tree.lineoffset + node.lineno, 0, ""))
+
+
 def assigned(tree: Any) -> bool:
     """Return True if an analysed process becomes continuous assignments."""
     return tree.kind == _kind.SIMPLE_ALWAYS_COMB
@@ -192,6 +198,9 @@ class Statements(_ConvertVisitor):
     def __init__(self, tree: Any, expressions: Any):
         super().__init__(tree, StringIO())
         self._expressions = expressions
+        self._loops: list[Any] = []
+        for loop in (node for node in ast.walk(tree) if isinstance(node, ast.For)):
+            tree.vardict |= {flag: False for _, flag in self._flags(loop)}
         if tree.kind == _kind.ALWAYS_COMB:
             self.okSigAss = False
 
@@ -199,6 +208,8 @@ class Statements(_ConvertVisitor):
         """Return a process; `sensitivity` returns the Verilog for what it waits for, from the signals and edges."""
         tree, [node] = self.tree, self.tree.body
         self.writeDoc(node)
+        if tree.kind in (_kind.ALWAYS_COMB, _kind.SIMPLE_ALWAYS_COMB):
+            self._refuse_latches(node)
         if assigned(tree):
             self.visit_stmt(node.body)
             return self.buf.getvalue()
@@ -229,6 +240,9 @@ class Statements(_ConvertVisitor):
     def printed_function(self, name: str) -> str:
         """Return a function, or a task, which has no result."""
         tree, [node] = self.tree, self.tree.body
+        for part in ast.walk(node):
+            if isinstance(part, ast.Attribute) and part.attr == "next":
+                self._expressions.refuse(part, "a function cannot drive signals in Verilog; let it return a value")
         self.returnLabel = name
         _end_in_returns(node.body, self._expressions)
         word = "task" if tree.kind == _kind.TASK else "function"
@@ -246,6 +260,35 @@ class Statements(_ConvertVisitor):
         self.dedent()
         self._lines("end", f"end{word}", "")
         return self.buf.getvalue()
+
+    def _refuse_latches(self, process: Any) -> None:
+        """Refuse a signal that keeps its value in some cases, or in some bits."""
+        always = self._always_assigned(process.body)
+        places: dict[str, list[Any]] = {}
+        for node in (node for node in ast.walk(process) if isinstance(node, ast.Assign) and _is_next(node.targets[0])):
+            places.setdefault(_root(node.targets[0]), []).append(node)
+        for name, nodes in places.items():
+            if name not in always:
+                self._expressions.refuse(nodes[0], f"{name} keeps its value in other cases, which makes a latch; "
+                                         "assign it in all cases, or write @always to mean a latch")  # fmt: skip
+            parts = [self._expressions.part(node.targets[0]) for node in nodes]
+            width = len(self.tree.symdict[name]) if isinstance(self.tree.symdict[name], SignalType) else 0
+            if None not in parts and width > len({bit for part in parts for bit in range(*part)}):
+                self._expressions.refuse(nodes[0], f"some bits of {name} are never assigned; assign all {width}")
+
+    def _always_assigned(self, body: Sequence[Any]) -> set[str]:
+        found: set[str] = set()
+        for node in body:
+            if isinstance(node, ast.Assign):
+                found.add(_root(node.targets[0]))
+            elif isinstance(node, ast.For):
+                found |= self._always_assigned(node.body)
+            elif isinstance(node, ast.If) and (node.else_ or node.isFullCase):
+                branches = [branch for _, branch in node.tests] + [node.else_] * bool(node.else_)
+                found |= set.intersection(*map(self._always_assigned, branches))
+            elif isinstance(node, ast.Match) and self._pattern(node, node.cases[-1]) == "default":
+                found |= set.intersection(*(self._always_assigned(case.body) for case in node.cases))
+        return found
 
     def _lines(self, *lines: str) -> None:
         for line in lines:
@@ -309,15 +352,52 @@ class Statements(_ConvertVisitor):
         name, (start, stop, step) = node.target.id, self._expressions.loop(node)
         going, change = ("<", "+") if step > 0 else (">=", "-")
         end = stop if step > 0 else stop + 1
+        flags = [flag for kind, flag in self._flags(node)]
+        if flags[:1] == [f"{name}_goes_on"]:
+            self.write(f"{flags[0]} = 1;")
+            self.writeline()
         self.write(f"for ({name}={start}; {name}{going}{end}; {name}={name}{change}{abs(step)}) begin")
         self.indent()
-        self.visit_stmt(node.body)
+        self._loops.append(node)
+        if f"{name}_is_on" in flags:
+            self._lines(f"{name}_is_on = 1;")
+        self._guarded(node.body, [flag for flag in flags if flag == f"{name}_goes_on"])
+        self._loops.pop()
         self.dedent()
         self._lines("end")
 
+    def visit_stmt(self, body: Any) -> None:
+        for place, node in enumerate(body):
+            self.writeline()
+            self.visit(node)
+            flags = [flag for loop in self._loops[-1:] for _, flag in self._flags(loop, node)]
+            if flags and body[place + 1 :]:
+                self._guarded(body[place + 1 :], flags)
+                return
+
+    def _guarded(self, body: Any, flags: Sequence[str]) -> None:
+        """Print statements that are skipped after a break or a continue."""
+        if flags:
+            self._lines(f"if ({' && '.join(flags)}) begin")
+            self.indent()
+        self.visit_stmt(body)
+        if flags:
+            self.dedent()
+            self._lines("end")
+
+    def _flags(self, loop: Any, within: Any = None) -> list[tuple[type, str]]:
+        """Return the flags of a loop's breaks and continues, for those within a statement."""
+        kinds = {ast.Break: "goes_on", ast.Continue: "is_on"}
+        found = {type(node) for node in _own_nodes(within or loop, within is None)}
+        return [(kind, f"{loop.target.id}_{text}") for kind, text in kinds.items() if kind in found]
+
     def mapToCase(self, node: Any, *_: Any) -> None:
         cases = [(self._expressions.case(node.caseVar, test.case[1]), suite) for test, suite in node.tests]
-        self._cases(node.caseVar, [*cases, *([("default", node.else_)] if node.else_ else [])])
+        if node.else_:
+            cases.append(("default", node.else_))
+        elif node.isFullCase and self.tree.kind == _kind.ALWAYS_COMB:
+            cases[-1] = "default", cases[-1][1]  # a code that no state has would keep values
+        self._cases(node.caseVar, cases)
 
     def visit_Match(self, node: Any) -> None:
         self._cases(node.subject, [(self._pattern(node, case), case.body) for case in node.cases])
@@ -356,7 +436,8 @@ class Statements(_ConvertVisitor):
         self._expressions.refuse(node, "synthesis refuses return in a process; write if and else around what it skips")
 
     def visit_Break(self, node: Any) -> None:
-        self._expressions.refuse(node, "synthesis has no break and no continue; write if around what they skip")
+        loop = self._loops[-1] if self._loops else self.visit_While(node)
+        self.write(f"{dict(self._flags(loop))[type(node)]} = 0;")
 
     visit_Continue = visit_Break
 
@@ -366,6 +447,9 @@ class Statements(_ConvertVisitor):
 
     visit_Yield = visit_While
 
+    def generic_visit(self, node: Any) -> None:
+        self._expressions.refuse(node, f"Verilog has no {ast.unparse(node).splitlines()[0]}; write it otherwise")
+
 
 def declaration(kind: str, known: Any) -> str:
     """Return the declaration of a variable up to its name, from a value of its type."""
@@ -373,6 +457,21 @@ def declaration(kind: str, known: Any) -> str:
         return f"{kind} " if isinstance(known, bool) else "integer "
     signed = "signed " * ((getattr(known, "_min", None) or 0) < 0)
     return f"{kind} {signed}[{known._nrbits - 1}:0] "
+
+
+def _own_nodes(node: Any, inside: bool = False) -> Iterator[ast.AST]:
+    """Yield a statement and its parts, except those of loops in it."""
+    yield node
+    if inside or not isinstance(node, ast.For):
+        for child in ast.iter_child_nodes(node):
+            yield from _own_nodes(child)
+
+
+def _root(target: Any) -> str:
+    """Return the name of what is assigned."""
+    while not isinstance(target, ast.Name):
+        target = target.value
+    return target.id
 
 
 def _is_next(target: Any) -> bool:

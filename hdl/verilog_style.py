@@ -11,7 +11,7 @@ from typing import Any
 from myhdl import ConcatSignal
 
 from raycaster.hdl import internals
-from raycaster.hdl.contents import Contents, Instance, Loading, is_signed
+from raycaster.hdl.contents import Contents, Instance, Loading, check_keyword, is_signed
 from raycaster.hdl.expressions import Expressions, Range
 from raycaster.hdl.internals import Constant, EnumItemType, SignalType, Statements, operands_of, states_by_name
 from raycaster.hdl.port_comments import Comments
@@ -194,6 +194,8 @@ def _statements(
     """Return the printer of a process or a function, which adds to `functions` those that it calls, by name."""
 
     def name_of(called: Any, ranges: Sequence[Range]) -> str:
+        for name in (*called.argnames, *called.vardict):
+            check_keyword(contents.block, name)
         given = dict(zip(called.argnames, ranges, strict=True))
         text = _statements(called, contents, functions, given).printed_function("\0")
         known = next((name for name, other in functions.items() if other == text), None)

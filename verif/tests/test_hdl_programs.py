@@ -3,7 +3,7 @@
 
 import pytest
 from hdl_blocks import random_inputs
-from myhdl import Signal, always, always_comb, always_seq, block, concat, enum, instance, instances, intbv
+from myhdl import Signal, always, always_comb, always_seq, block, concat, downrange, enum, instance, instances, intbv
 
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.signals import bit, reset_signal, signed, unsigned
@@ -284,6 +284,69 @@ def bits_and_variables(clk, a, index, k, y, bits, picked, kept, mode):
             yield clk.posedge
             count[:] = (count + k) % 16
             kept.next = count
+
+    return instances()
+
+
+@program(a=6, first=4, third=4, pairs=4, ones=4, exact=5, narrow=4, both=1)
+def loops_end_early(a, first, third, pairs, ones, exact, narrow, both):
+    @always_comb
+    def find():
+        first.next = 9
+        for k in range(6):
+            if a[k]:
+                first.next = k
+                break
+
+    @always_comb
+    def count():
+        zeros = 0
+        for k in range(6):
+            if a[k]:
+                continue
+            zeros = zeros + 1
+            if zeros == 3:
+                break
+        third.next = zeros
+
+    @always_comb
+    def nest():
+        steps = 0
+        for i in range(3):
+            for j in range(2):
+                if a[i * 2 + j]:
+                    break
+                steps = steps + 1
+            if steps > 3:
+                break
+        pairs.next = steps
+
+    def leading(word):
+        result = intbv(0)[4:]
+        for k in downrange(6):
+            if word[k]:
+                break
+            result[:] = result + 1
+        return result
+
+    @always_comb
+    def lead():
+        ones.next = leading(~a)
+
+    @always_comb
+    def wrap():
+        exact.next = (a[3:] + a[6:3] + 1) % (1 << 3)
+        narrow.next = (a + 9) % (1 << 4)
+        both.next = not (not a[0]) and a[6:3] != 2  # noqa: SIM208
+
+    return instances()
+
+
+@program(clk=1, index=2, y=4, z=4)
+def tables_are_arguments(clk, index, y, z):
+    rising, falling = ([Signal(intbv(start + step * n)[4:]) for n in range(4)] for start, step in ((3, 2), (15, -4)))
+    first = reads_words(clk, rising, index, y)
+    second = reads_words(clk, falling, index, z)
 
     return instances()
 

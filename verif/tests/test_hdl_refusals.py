@@ -58,6 +58,50 @@ def process(statements: str) -> str:
                 "result.next = [a, b][0]",
             )
         ),
+        *(
+            (process(statements), reason)
+            for statements, reason in (
+                ("result.next = a in (1, 2)", "Verilog has no in; write == or != for each value"),
+                ("result.next = a is b", "Verilog has no is"),
+                ("print(f'{a}')\nresult.next = a", "MyHDL does not convert f'{a}'; write it otherwise"),
+                ("if (n := a + 1) > 3:\n    result.next = n", "Verilog has no (n := (a + 1))"),
+                ("n: int = 3\nresult.next = a ^ n", "Verilog has no n: int = 3"),
+                ("with a:\n    result.next = b", "Verilog has no with a:"),
+                ("result.next = 0\nwhile a > result:\n    result.next = b", "synthesis has no such loop"),
+                ("result.next[3:] = index", "some bits of result are never assigned; assign all 4"),
+                (
+                    "if index == 0:\n    result.next = a\nelif index == 1:\n    result.next = b",
+                    "result keeps its value",
+                ),
+                ("result.next = b[9]", "bit 9 is beyond the highest bit, 3"),
+                ("result.next = b[6:2]", "bits 5 to 2 are not all within 0 to 3"),
+                ("result.next = a << (index - a)", "the number of places may be below 0"),
+                ("result.next = None if a else b", "tristate signals are not supported"),
+                ("result.next = 2 ** index", "2 ** index: Verilog has no such operator here"),
+            )
+        ),
+        (
+            "joined = ConcatSignal(a)\n" + process("result.next = joined"),
+            "MyHDL does not support this (AssertionError)",
+        ),
+        ("def double(x):\n    result.next = x\n" + process("double(a)"), "a function cannot drive"),
+        (
+            "größe = unsigned(4)\n"
+            + process("result.next = größe").replace("process", "other")
+            + "@always_comb\ndef go():\n    größe.next = a\n",
+            "größe has letters that Verilog does not know",
+        ),
+        (
+            "words = [unsigned(4) for _ in range(2)]\n@always_comb\ndef first():\n    words[0].next = a\n"
+            "@always(clk.posedge)\ndef second():\n    words[1].next = b\n" + process("result.next = words[1]"),
+            "words has two drivers",
+        ),
+        (
+            "words = [unsigned(4) for _ in range(4)]\n@block\ndef inner(clk, index, a):\n    @always(clk.posedge)\n"
+            "    def go():\n        words[index].next = a\n    return go\none = inner(clk, index, a)\n"
+            + process("result.next = words[index]"),
+            "inner: words is a list of the code around the block",
+        ),
         ("lost = bit()\n" + process("lost.next = a[0]\nresult.next = b"), "lost: Signal is driven but not read"),
         (
             "part = b(4, 0)\nadding = add(a, index, part, unconnected(1))\n",

@@ -155,10 +155,10 @@ GOOD = re.findall(r"```python\n(.*?)```", (ROOT / "docs/extend.md").read_text(),
         (
             "dimmed.word.next = half",
             "dimmed.wrd.next = half",
-            "35: AttributeError: 'Colour' object has no attribute 'wrd'",
+            "35: 'Colour' object has no attribute 'wrd' (AttributeError)",
         ),
-        ("unsigned(CHANNEL_BITS)", "unsinged(CHANNEL_BITS)", "22: NameError: name 'unsinged' is not defined"),
-        ("(red=red, ", "(", "30: ValueError: Colour: red: missing, or no field"),
+        ("unsigned(CHANNEL_BITS)", "unsinged(CHANNEL_BITS)", "22: name 'unsinged' is not defined (NameError)"),
+        ("(red=red, ", "(", "30: Colour: red: missing, or no field (ValueError)"),
         ("dimmed.word.next = colour", "dimmed.word.next = brighter(colour", "37: '(' was never closed"),
     ],
 )
