@@ -264,6 +264,7 @@ def as_options(config: Configuration) -> list[str]:
 
 def run_command(main: Callable[[], int | None]) -> NoReturn:
     """Run a command's body; errors that the user can fix become one line on standard error and exit code 2."""
+    os.environ.setdefault("PATH", os.defpath)  # a service manager may leave it out, and cocotb reads it
     try:
         if sys.flags.optimize:
             raise UserError(

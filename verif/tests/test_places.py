@@ -126,6 +126,8 @@ def test_no_search_path(tmp_path: Path):
     ask = "from raycaster.sim.simulator import find_tool, library_sources; library_sources(find_tool('verilator'))"
     done = program("-c", f"{ask}; from raycaster.tools import _search_path; print(_search_path())")
     assert (done.returncode, done.stdout.strip().endswith(os.defpath)) == (0, True), done.stderr
+    ended = "from raycaster.options import run_command; run_command(lambda: __import__('os').environ['PATH'] and 3)"
+    assert program("-c", ended).returncode == 3
 
 
 @pytest.mark.parametrize("words", [["-O", "-m", "raycaster.cli"], ["-OO", "-m", "raycaster.cli"]])
