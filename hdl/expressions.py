@@ -16,7 +16,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple, NoReturn
 
-from myhdl import concat, intbv, now
+from myhdl import concat, intbv
 
 from raycaster.hdl import internals
 from raycaster.hdl.errors import UserError
@@ -34,7 +34,7 @@ SYMBOLS = {
     ast.NotEq: "!=", ast.Gt: ">", ast.GtE: ">=", ast.Lt: "<", ast.LtE: "<=", ast.And: "&&", ast.Or: "||",
 }  # fmt: skip
 
-COMPUTED: Mapping[type, Callable[..., int]] = {
+COMPUTED: Mapping[type, Callable[..., Any]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.BitOr: operator.or_,
     ast.BitAnd: operator.and_, ast.BitXor: operator.xor, ast.Mod: operator.mod, ast.FloorDiv: operator.floordiv,
     ast.LShift: lambda value, places: value << min(max(places, 0), 1 << 10),
@@ -121,14 +121,14 @@ class Expressions:
     def initial(self, value: Any) -> str:
         """Return an initial value."""
         if isinstance(value, EnumItemType):
-            return value._toVerilog()
+            return internals.text_of(value)
         number, bits = int(value), max(len(value), 1) if isinstance(value, intbv) else 1
         return str(number) if abs(number) < 1 << 30 else f"{'-' * (number < 0)}{bits}'h{abs(number):x}"
 
     def case(self, subject: ast.expr, value: Any) -> str:
         """Return a value that a case compares with its subject."""
         if isinstance(value, EnumItemType):
-            return value._toVerilog()
+            return internals.text_of(value)
         if not isinstance(value, int):
             self.refuse(subject, "Verilog's case has numbers and states only; write if and elif")
         bits, signed = self._type(subject)
@@ -199,8 +199,8 @@ class Expressions:
                 return _either(self.range(node.body), self.range(node.orelse))
             case ast.Call(args=[value, *_]) if _called(node) in (int, intbv) or _is_modbv(_called(node)):
                 return self.range(value)
-            case ast.Call() if hasattr(node, "tree"):
-                return node.tree.returned if hasattr(node.tree, "returned") else self._returned(node)
+            case ast.Call() if _tree(node):
+                return self._returned(node)
             case ast.Name(id=name) if name in self._ranges:
                 return self._ranges[name]
             case ast.Subscript(slice=ast.Slice(lower=None, upper=bits)) if bits is not None:
@@ -241,7 +241,8 @@ class Expressions:
 
     def _find_ranges(self) -> None:
         """Find the ranges of loops' variables, and those of integer variables from what is assigned to them."""
-        for loop in (node for node in ast.walk(self._tree) if isinstance(node, ast.For)):
+        loops: list[Any] = [node for node in ast.walk(self._tree) if isinstance(node, ast.For)]
+        for loop in loops:
             self._ranges[loop.target.id] = Range(0, 0)
         assigned: dict[str, list[ast.expr]] = {}
         for node in ast.walk(self._tree):
@@ -257,7 +258,7 @@ class Expressions:
         for name in assigned:
             self._ranges[name] = Range(0, 0)
         for attempt in range(4):
-            for loop in (node for node in ast.walk(self._tree) if isinstance(node, ast.For)):
+            for loop in loops:
                 start, stop, step = self.loop(loop)
                 last = stop - 1 if step > 0 else stop + 1
                 self._ranges[loop.target.id] = Range(min(start, last), max(start, last))
@@ -286,7 +287,7 @@ class Expressions:
 
     def _returned(self, node: ast.Call) -> Range:
         """Return the range of a function's result."""
-        tree = node.tree
+        tree = _tree(node)
         inner = Expressions(tree, self._function_name, dict(zip(tree.argnames, self.arguments(node), strict=True)))
         returns = [one.value for one in ast.walk(tree) if isinstance(one, ast.Return) and one.value is not None]
         if not returns or not _is_integer(tree.returnObj):
@@ -335,10 +336,8 @@ class Expressions:
                 return sum(self._operand_of_concat(argument)[0] for argument in node.args), False
             case ast.Call() if _called(node) is bool:
                 return 1, False
-            case ast.Call() if hasattr(node, "tree"):
-                return _shape(node.tree.returnObj)
-            case ast.Call() if _called(node) is now:
-                return 64, False
+            case ast.Call() if (tree := _tree(node)) is not None:
+                return _shape(tree.returnObj)
             case ast.Attribute(value=inner, attr="val" | "next"):
                 return self._type(inner)
             case ast.Name() | ast.Attribute():
@@ -491,8 +490,7 @@ class Expressions:
         if power is None and min(dividend.low, divisor.low) < 0:
             self.refuse(node, "below 0 Verilog rounds up, and Python down; shift to the right, or take bits")
         left = self._emit(node.left, context, power)
-        big = power is not None and power > 16
-        right = f"(1 << {power})" if big and power < 31 else self._emit(node.right, context, None)
+        right = f"(1 << {power})" if 16 < (power or 0) < 31 else self._emit(node.right, context, None)
         return f"({left} {SYMBOLS[type(node.op)]} {right})"
 
     def _number(self, node: ast.expr, value: Any, context: Context) -> str:
@@ -513,7 +511,7 @@ class Expressions:
             case ast.Name() | ast.Attribute(attr="val" | "next") | ast.Subscript():
                 return self._place(node)
             case ast.Attribute() if isinstance(self._object(node), EnumItemType):
-                return self._object(node)._toVerilog()
+                return internals.text_of(self._object(node))
             case ast.Constant(value=str(text)):
                 return f'"{text}"' if set(text) - {"0", "1"} else f"{len(text)}'b{text}"
             case ast.Constant(value=None):
@@ -545,10 +543,7 @@ class Expressions:
         if function is bool:
             context = self._context([node.args[0]], None)
             return f"({self._emit(node.args[0], context, None)} != 0)"
-        if function is now:
-            return "$time"
-        if hasattr(node, "tree"):
-            tree = node.tree
+        if tree := _tree(node):
             name = self._function_name(tree, self.arguments(node))
             texts = []
             for argument, formal in zip(node.args, tree.argnames, strict=True):
@@ -565,7 +560,7 @@ class Expressions:
         """Return the bits of a slice, whose bounds may depend on loops' variables."""
         assert isinstance(node.slice, ast.Slice)
         lower, upper = node.slice.lower, node.slice.upper
-        bounds = [self.constant(lower) if lower else whole, self.constant(upper) if upper else 0]
+        bounds: list[Any] = [self.constant(lower) if lower else whole, self.constant(upper) if upper else 0]
         if None not in bounds:
             return bounds[0] - bounds[1]
         names = {one.id for bound in (lower, upper) if bound for one in ast.walk(bound) if isinstance(one, ast.Name)}
@@ -637,9 +632,10 @@ class Expressions:
             assert upper is not None
             return f"({self._place(node.value)} >>> {self.text(upper)})"
         text, offset = self._base(node.value)
-        low = self.constant(upper) if upper else 0
+        low: Any = self.constant(upper) if upper else 0
         width = self._width(node, bits)
-        if low is None and upper:
+        if low is None:
+            assert upper is not None
             text_of_low = self.text(upper)
             return f"{text}[{text_of_low}{f' + {offset}' * bool(offset)} +: {width}]"
         high = low + offset + width - 1
@@ -652,7 +648,7 @@ class Expressions:
         match node:
             case ast.Subscript(slice=ast.Slice(lower=None, upper=None)):
                 return self._base(node.value)
-            case ast.Subscript(slice=ast.Slice(upper=upper)) if self._type(node.value)[1] is False or node.slice.lower:
+            case ast.Subscript(slice=ast.Slice(lower=lower, upper=upper)) if lower or not self._type(node.value)[1]:
                 low = self.constant(upper) if upper else 0
                 if low is not None and not isinstance(node.value, ast.Call):
                     text, offset = self._base(node.value)
@@ -683,10 +679,10 @@ class Expressions:
             return name
         if isinstance(known, SignalType):
             return str(known)
-        if is_memory(known):
-            return is_memory(known)
+        if memory := is_memory(known):
+            return memory
         if isinstance(known, EnumItemType):
-            return known._toVerilog()
+            return internals.text_of(known)
         if type(known) is intbv:
             self.refuse(node, f"{name} is an intbv of no process, so Verilog has no value for it; use tied()")
         self.refuse(node, f"{name} has no value in Verilog; use a number, a signal or a list of signals")
@@ -699,6 +695,11 @@ def _known(node: Any) -> Any:
 def _called(node: ast.expr) -> Any:
     """Return the function that a call calls."""
     return _known(node.func) if isinstance(node, ast.Call) else None
+
+
+def _tree(node: ast.AST) -> Any:
+    """Return a function that a call calls, as MyHDL has analysed it; None if Verilog has it."""
+    return getattr(node, "tree", None)
 
 
 def _is_modbv(function: Any) -> bool:

@@ -159,6 +159,11 @@ def written_words(tree: Any, name: str) -> list[int | None]:
     return found
 
 
+def text_of(state: Any) -> str:
+    """Return a state of an enumeration in Verilog."""
+    return state._toVerilog()
+
+
 def is_memory(known: Any) -> str | None:
     """Return the name of a list of signals that a process indexes, None for anything else."""
     return _getMemInfo(known).name if isinstance(known, list) and _isMem(known) else None
@@ -278,13 +283,13 @@ class Statements(_ConvertVisitor):
 
     def _always_assigned(self, body: Sequence[Any]) -> set[str]:
         found: set[str] = set()
+        node: Any
         for node in body:
             if isinstance(node, ast.Assign):
                 found.add(_root(node.targets[0]))
             elif isinstance(node, ast.For):
                 found |= self._always_assigned(node.body)
-            elif isinstance(node, ast.If) and (node.else_ or node.isFullCase):
-                branches = [branch for _, branch in node.tests] + [node.else_] * bool(node.else_)
+            elif isinstance(node, ast.If) and (branches := _branches(node)):
                 found |= set.intersection(*map(self._always_assigned, branches))
             elif isinstance(node, ast.Match) and self._pattern(node, node.cases[-1]) == "default":
                 found |= set.intersection(*(self._always_assigned(case.body) for case in node.cases))
@@ -323,7 +328,7 @@ class Statements(_ConvertVisitor):
         waits = _is_next(target) and self.okSigAss and not assigned(self.tree)
         arrow = "<=" if waits else "="
         index = value.slice if isinstance(value, ast.Subscript) else None
-        table = table_of(value.value.obj) if isinstance(index, ast.expr) else None
+        table = table_of(getattr(value.value, "obj", None)) if isinstance(index, ast.expr) else None
         if table and self._expressions.constant(value) is None:
             self.write(f"case ({self._expressions.text(index)})")
             self.indent()
@@ -403,10 +408,10 @@ class Statements(_ConvertVisitor):
         self._cases(node.subject, [(self._pattern(node, case), case.body) for case in node.cases])
 
     def _pattern(self, node: Any, case: Any) -> str:
-        patterns = case.pattern.patterns if isinstance(case.pattern, ast.MatchOr) else [case.pattern]
+        patterns: list[Any] = case.pattern.patterns if isinstance(case.pattern, ast.MatchOr) else [case.pattern]
         texts = []
         for pattern in patterns:
-            if isinstance(pattern, ast.MatchAs) and pattern.pattern is pattern.name is None and not case.guard:
+            if ast.unparse(pattern) == "_" and not case.guard:
                 return "default"
             if not isinstance(pattern, ast.MatchValue) or case.guard:
                 self._expressions.refuse(pattern, "Verilog's case has numbers and states only; write if and elif")
@@ -428,7 +433,7 @@ class Statements(_ConvertVisitor):
         self._lines("endcase")
 
     def visit_Return(self, node: Any) -> None:
-        if isinstance(self.tree, ast.AST) and hasattr(self.tree, "hasReturn"):
+        if hasattr(self.tree, "hasReturn"):
             bits = getattr(self.tree.returnObj, "_nrbits", 1 if isinstance(self.tree.returnObj, bool) else 32)
             if node.value is not None:
                 self.write(f"{self.returnLabel} = {self._expressions.text(node.value, bits)};")
@@ -488,15 +493,24 @@ def _quoted(text: str) -> str:
     return f'"{text}"'
 
 
+def _branches(node: Any, complete: bool = True) -> list[Any]:
+    """Return the bodies of an `if`; if they must be complete, none if there is a case without a body."""
+    branches = [branch for _, branch in node.tests]
+    if not complete or node.else_:
+        return [*branches, node.else_]
+    return branches if node.isFullCase else []
+
+
 def _end_in_returns(body: list[Any], expressions: Any) -> None:
     """Move what follows an `if` with a return into its other branches, so that nothing is skipped."""
+    statement: Any
     for place, statement in enumerate(body):
         if isinstance(statement, ast.Return):
             del body[place + 1 :]
         elif isinstance(statement, ast.If) and any(isinstance(part, ast.Return) for part in ast.walk(statement)):
             rest = body[place + 1 :]
             del body[place + 1 :]
-            for branch in [*(branch for _, branch in statement.tests), statement.else_]:
+            for branch in _branches(statement, False):
                 branch.extend(rest)
                 _end_in_returns(branch, expressions)
         elif any(isinstance(part, ast.Return) for part in ast.walk(statement)):

@@ -143,7 +143,7 @@ def _initial_values(contents: Contents) -> Iterator[str]:
 def _value(signal: SignalType) -> str:
     """Return a signal's initial value: a plain number if it is small, the name of a state, or a sized number."""
     if isinstance(signal.val, EnumItemType):
-        return signal.val._toVerilog()
+        return internals.text_of(signal.val)
     return str(int(signal.val)) if 0 <= int(signal.val) < 1 << 30 else number(signal)
 
 
