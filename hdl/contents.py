@@ -192,6 +192,9 @@ class Contents:
                 self._writers.setdefault(id(part.symdict[name]), []).append((part, name))
             if internals.keeps(part):
                 self.starting |= {id(part.symdict[name]) for name in (*part.outputs, *part.outmems)}
+            if internals.is_combinational(part) and all(isinstance(one, (Tied, Constant)) for one in part.senslist):
+                reason = "reads constants only, and Verilog would never run it; compute their values outside of it"
+                self._refuse(f"{part.name} {reason}", part.name)
             edges = [getattr(edge, "sig", edge) for edge in getattr(part, "senslist", ())]
             for signal in [*(part.sigdict[name] for name in sorted(part.inputs)), *edges, getattr(part, "reset", None)]:
                 if isinstance(signal, SignalType):
@@ -333,7 +336,8 @@ class Contents:
 
     def free(self, name: str) -> str:
         """Take a name that nothing else has: this one, if possible."""
-        first, number = name, 0
+        first, number = re.sub(r"[^\x00-\x7f]", "_", name), 0
+        name = first
         while name in self._owners or _is_keyword(name):
             number += 1
             name = f"{first}_{number}"

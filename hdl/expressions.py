@@ -108,15 +108,19 @@ class Expressions:
                 self.refuse(target, f"MyHDL assigns to a copy of these bits; write {name}.next[...]")
             inner = at
         target = outer
-        if isinstance(target, ast.Name) and _is_integer(self._object(target)):
-            limit = self.range(value)
-            if max(limit.bits(True), 1) > INTEGER_BITS:
-                self.refuse(value, f"{target.id} is a Verilog integer of {INTEGER_BITS} bits, and the result has "
-                            f"{limit.bits(True)}; write {target.id} = intbv(0, min=..., max=...)")  # fmt: skip
+        if isinstance(target, ast.Name):
+            self.check_integer(value, self._object(target), target.id)
         modulo = self._power(value.right) if isinstance(value, ast.BinOp) and isinstance(value.op, ast.Mod) else None
         if modulo == bits and isinstance(value, ast.BinOp) and isinstance(value.right, ast.BinOp):
             value = value.left  # an assignment wraps around by itself
         return self._place(target), self.text(value, bits)
+
+    def check_integer(self, value: ast.expr, known: Any, name: str) -> None:
+        """Refuse a value that a Verilog integer does not hold, for a variable or result of this type."""
+        bits = self.range(value).bits(True)
+        if _is_integer(known) and bits > INTEGER_BITS:
+            self.refuse(value, f"{name} is an integer of {INTEGER_BITS} bits in Verilog, and has {bits} here; use an "
+                        "intbv(0, min=..., max=...)")  # fmt: skip
 
     def initial(self, value: Any) -> str:
         """Return an initial value."""
@@ -204,9 +208,9 @@ class Expressions:
             case ast.Name(id=name) if name in self._ranges:
                 return self._ranges[name]
             case ast.Subscript(slice=ast.Slice(lower=None, upper=bits)) if bits is not None:
-                places = self.range(bits)
+                places = max(self.range(bits).low, 0)
                 low, high = self.range(node.value)
-                return Range(low >> places.low if low < 0 else 0, high >> places.low)
+                return Range(low >> places if low < 0 else 0, high >> places)
             case ast.Subscript() if (table := table_of(self._object(node.value))) is not None:
                 return Range(min(table), max(table))
         known = self._object(node)
@@ -719,7 +723,7 @@ def _shape(known: Any) -> tuple[int, bool]:
     """Return the bits and the sign of a signal, or of a value of a variable's type."""
     known = known.val if isinstance(known, SignalType) else known
     if isinstance(known, intbv):
-        return len(known), (known.min or 0) < 0
+        return len(known) or INTEGER_BITS, (known.min or 0) < 0
     if isinstance(known, EnumItemType):
         return len(next(iter(internals.states_of(known).values()))), False
     return (INTEGER_BITS, True) if _is_integer(known) else (1, False)

@@ -110,7 +110,22 @@ def analysed(processes: Iterable[Process]) -> list[Any]:
         names = {id(process.symdict[name]): name for name in process.outputs if name in process.symdict}
         getattr(process, "sigregs", []).sort(key=lambda signal, names=names: names.get(id(signal), ""))
     _genUniqueSuffix.reset()
-    return _analyzeGens(processes, {id(process): process.name for process in processes})
+    trees = _analyzeGens(processes, {id(process): process.name for process in processes})
+    for tree in trees:
+        _add_inputs(tree)
+    return trees
+
+
+def _add_inputs(tree: Any) -> None:
+    """Add to what a process or a function reads, as MyHDL does not, the arguments of calls, and what functions read."""
+    calls: list[Any] = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and hasattr(node, "tree")]
+    for call in calls:
+        names = {node.id for argument in call.args for node in ast.walk(argument) if isinstance(node, ast.Name)}
+        _add_inputs(call.tree)
+        tree.inputs |= names & {*tree.sigdict}
+        for name in signals_read_around(call.tree):
+            tree.inputs.add(name)
+            tree.sigdict.setdefault(name, call.tree.symdict[name])
 
 
 def check_statements(process: Process) -> None:
@@ -132,8 +147,15 @@ def assigned(tree: Any) -> bool:
 
 
 def keeps(tree: Any) -> bool:
-    """Return True if what an analysed process drives are registers: it waits for an edge, or runs only once."""
-    return any(not isinstance(edge, SignalType) for edge in getattr(tree, "senslist", ())) or tree.kind == _kind.INITIAL
+    """Return True if what an analysed process drives are registers or latches, or if it runs only once."""
+    edges = any(not isinstance(edge, SignalType) for edge in getattr(tree, "senslist", ()))
+    latches = tree.kind == _kind.ALWAYS_DECO and {*tree.outputs} > always_assigned(tree.body[0].body)
+    return edges or latches or tree.kind == _kind.INITIAL
+
+
+def is_combinational(tree: Any) -> bool:
+    """Return True if an analysed process is @always_comb with more than assignments."""
+    return tree.kind == _kind.ALWAYS_COMB
 
 
 TRISTATE = (_TristateSignal, _TristateDriver)
@@ -143,6 +165,12 @@ def drivers_of(process: Process) -> Iterator[Any]:
     """Yield the signals and lists of signals that a process drives."""
     for name in process.outputs:
         yield process.symdict.get(name)
+
+
+def signals_read_around(function: Any) -> list[str]:
+    """Return the names of signals that an analysed function reads and that are no arguments of it."""
+    around = sorted({*function.inputs} - {*function.argnames})
+    return [name for name in around if isinstance(function.symdict.get(name), SignalType)]
 
 
 def written_words(tree: Any, name: str) -> list[int | None]:
@@ -215,6 +243,8 @@ class Statements(_ConvertVisitor):
         self.writeDoc(node)
         if tree.kind in (_kind.ALWAYS_COMB, _kind.SIMPLE_ALWAYS_COMB):
             self._refuse_latches(node)
+        elif tree.kind != _kind.INITIAL:
+            self._refuse_missing(node)
         if assigned(tree):
             self.visit_stmt(node.body)
             return self.buf.getvalue()
@@ -255,6 +285,8 @@ class Statements(_ConvertVisitor):
         self.write(f"{word} {result.lstrip()}{name};")
         self.indent()
         for argument in tree.argnames:
+            if tree.symdict.get(argument) is None:
+                self._expressions.refuse(node, f"{argument} has no known type; assign its value to a signal first")
             way = "inout" if argument in tree.outputs else "input"
             self._lines(f"{way} {declaration('', tree.symdict[argument])}{argument};".replace("  ", " "))
         self._declare(tree.vardict)
@@ -266,9 +298,17 @@ class Statements(_ConvertVisitor):
         self._lines("end", f"end{word}", "")
         return self.buf.getvalue()
 
+    def _refuse_missing(self, process: Any) -> None:
+        """Refuse a process that waits for values but not for all that it reads, as synthesis does."""
+        waits = {id(edge) for edge in self.tree.senslist if isinstance(edge, SignalType)}
+        missing = [name for name in sorted(self.tree.inputs) if waits and id(self.tree.symdict[name]) not in waits]
+        if missing or 0 < len(waits) < len(self.tree.senslist):
+            self._expressions.refuse(process, f"it does not wait for {missing[0] if missing else 'edges only'}, as "
+                                     "synthesis does; write @always_comb, or wait for all that it reads")  # fmt: skip
+
     def _refuse_latches(self, process: Any) -> None:
         """Refuse a signal that keeps its value in some cases, or in some bits."""
-        always = self._always_assigned(process.body)
+        always = always_assigned(process.body)
         places: dict[str, list[Any]] = {}
         for node in (node for node in ast.walk(process) if isinstance(node, ast.Assign) and _is_next(node.targets[0])):
             places.setdefault(_root(node.targets[0]), []).append(node)
@@ -280,20 +320,6 @@ class Statements(_ConvertVisitor):
             width = len(self.tree.symdict[name]) if isinstance(self.tree.symdict[name], SignalType) else 0
             if None not in parts and width > len({bit for part in parts for bit in range(*part)}):
                 self._expressions.refuse(nodes[0], f"some bits of {name} are never assigned; assign all {width}")
-
-    def _always_assigned(self, body: Sequence[Any]) -> set[str]:
-        found: set[str] = set()
-        node: Any
-        for node in body:
-            if isinstance(node, ast.Assign):
-                found.add(_root(node.targets[0]))
-            elif isinstance(node, ast.For):
-                found |= self._always_assigned(node.body)
-            elif isinstance(node, ast.If) and (branches := _branches(node)):
-                found |= set.intersection(*map(self._always_assigned, branches))
-            elif isinstance(node, ast.Match) and self._pattern(node, node.cases[-1]) == "default":
-                found |= set.intersection(*(self._always_assigned(case.body) for case in node.cases))
-        return found
 
     def _lines(self, *lines: str) -> None:
         for line in lines:
@@ -436,6 +462,7 @@ class Statements(_ConvertVisitor):
         if hasattr(self.tree, "hasReturn"):
             bits = getattr(self.tree.returnObj, "_nrbits", 1 if isinstance(self.tree.returnObj, bool) else 32)
             if node.value is not None:
+                self._expressions.check_integer(node.value, self.tree.returnObj, "the result")
                 self.write(f"{self.returnLabel} = {self._expressions.text(node.value, bits)};")
             return
         self._expressions.refuse(node, "synthesis refuses return in a process; write if and else around what it skips")
@@ -477,6 +504,22 @@ def _root(target: Any) -> str:
     while not isinstance(target, ast.Name):
         target = target.value
     return target.id
+
+
+def always_assigned(body: Sequence[Any]) -> set[str]:
+    """Return the names that statements assign in any case."""
+    found: set[str] = set()
+    node: Any
+    for node in body:
+        if isinstance(node, ast.Assign):
+            found.add(_root(node.targets[0]))
+        elif isinstance(node, ast.For):
+            found |= always_assigned(node.body)
+        elif isinstance(node, ast.If) and (branches := _branches(node)):
+            found |= set.intersection(*map(always_assigned, branches))
+        elif isinstance(node, ast.Match) and ast.unparse(node.cases[-1].pattern) == "_":
+            found |= set.intersection(*(always_assigned(case.body) for case in node.cases))
+    return found
 
 
 def _is_next(target: Any) -> bool:

@@ -11,7 +11,7 @@ from typing import Any
 from myhdl import ConcatSignal
 
 from raycaster.hdl import internals
-from raycaster.hdl.contents import Contents, Instance, Loading, check_keyword, is_signed
+from raycaster.hdl.contents import Contents, Instance, Loading, check_keyword, is_signed, refusal
 from raycaster.hdl.expressions import Expressions, Range
 from raycaster.hdl.internals import Constant, EnumItemType, SignalType, Statements, operands_of, states_by_name
 from raycaster.hdl.port_comments import Comments
@@ -196,6 +196,9 @@ def _statements(
     def name_of(called: Any, ranges: Sequence[Range]) -> str:
         for name in (*called.argnames, *called.vardict):
             check_keyword(contents.block, name)
+        if not internals.keeps(tree) and (read := internals.signals_read_around(called)):
+            raise refusal(contents.block, f"{called.body[0].name} reads {read[0]}, for which nothing waits in MyHDL; "
+                          "make it an argument", read[0])  # fmt: skip
         given = dict(zip(called.argnames, ranges, strict=True))
         text = _statements(called, contents, functions, given).printed_function("\0")
         known = next((name for name, other in functions.items() if other == text), None)

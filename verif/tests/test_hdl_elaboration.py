@@ -84,6 +84,6 @@ def test_myhdls_private_parts_are_touched_in_one_file():
 
 def test_states_have_names_for_a_time():
     done = enum("IDLE", "BUSY", "DONE").DONE
-    with internals.states_by_name([done]):
-        assert done._toVerilog() == "DONE"
+    with internals.states_by_name([done], {("DONE", "10"): "DONE_1"}):
+        assert done._toVerilog() == "DONE_1"
     assert done._toVerilog() == "2'b10"

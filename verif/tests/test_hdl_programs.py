@@ -155,6 +155,35 @@ def functions_with_results(clk, a, q, y, z, up, kept):
     return instances()
 
 
+@program(clk=1, a=4, around=4, gate=1, y=4, kept=4, held=4)
+def functions_and_latches_read_signals(clk, a, around, gate, y, kept, held):
+    part = signed(6)
+
+    def mixed(word):
+        result = intbv(0)[4:]
+        result[:] = word ^ around
+        return result
+
+    def half(word):
+        return word >> 1
+
+    @always(clk.posedge)
+    def keep():
+        part.next = a - 9
+        kept.next = mixed(a)
+
+    @always_comb
+    def combine():
+        y.next = half(part & 15)
+
+    @always(a, gate)
+    def hold():
+        if gate:
+            held.next = a
+
+    return instances()
+
+
 SAME_NAMES, OTHER_NAMES = enum("IDLE", "end", "count"), enum("PAUSE", "count", "IDLE", "end")
 
 
