@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import inspect
 import re
-import sys
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +16,7 @@ from typing import Any
 
 from raycaster.hdl.contents import Connection, Contents, Instance, Loading, Module, Port, check_keyword, refusal
 from raycaster.hdl.elaboration import elaboration
-from raycaster.hdl.errors import UserError, faults_in_one_line
+from raycaster.hdl.errors import faults_in_one_line
 from raycaster.hdl.given import GivenVerilog, load_words
 from raycaster.hdl.internals import Block, SignalType, bits_of, drivers_of
 from raycaster.hdl.records import Field, block_arguments, block_ports, is_interface, signals_in
@@ -55,8 +54,6 @@ def convert_hierarchy(
         UserError: a block cannot be a module: see `raycaster.hdl.contents.Contents`; or given Verilog lists an output
             that is not an argument of its block, lacks its module, or has the name of another block.
     """
-    if sys.flags.optimize > 1:
-        raise UserError("python -OO leaves out the docstrings, which become the Verilog's comments; run it without -OO")
     with elaboration(), faults_in_one_line():
         converter = _Converter(directory, header, prefix, vocabulary or {})
         converter.driven = {*map(id, _drivers(top)), *map(id, block_ports(top).values())}

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
 import re
+import sys
 import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -34,7 +36,7 @@ class Comments:
         self._vocabulary, self._width = vocabulary, width
         self._given = inspect.signature(block.func).bind(*block.args, **block.kwargs).arguments
         self._known: Mapping[str, Any] = {**vocabulary, **block.func.__globals__, **self._given}
-        purpose, self._texts = _sections(inspect.getdoc(block.func) or "", "Args")
+        purpose, self._texts = _sections(_doc(block.func), "Args")
         self.purpose = "".join(f"// {self._in_verilog(line)}\n" for line in purpose.splitlines())
         """The text above the module."""
 
@@ -74,7 +76,7 @@ class Comments:
                 first = next((port for port in ports if port == argument or port.startswith(f"{argument}_")), None)
                 add(first, f"{argument}_*: {text}" if is_group else text)
             add_layout(argument, value)
-            attributes = _sections(inspect.getdoc(type(value)) or "", "Attributes")[1] if is_group else {}
+            attributes = _sections(_doc(type(value)), "Attributes")[1] if is_group else {}
             for attribute, meaning in attributes.items():
                 port = f"{argument}_{attribute}"
                 add(port, meaning)
@@ -102,6 +104,17 @@ class Comments:
         text = re.sub(r"`([\w.]+)`((?: Hz)?)", number, text)
         text = re.sub(r"\b\w+\.\w+\b", lambda match: str(self._vocabulary.get(match[0], match[0])), text)
         return re.sub(r"\b([a-z]\w*)\.([a-z]\w*)\b", r"\1_\2", text)
+
+
+def _doc(what: Any) -> str:
+    """Return the docstring of a function or a class; python -OO has it in the source only."""
+    if sys.flags.optimize < 2:
+        return inspect.getdoc(what) or ""
+    for one in getattr(what, "__mro__", (what, object))[:-1]:
+        [tree] = ast.parse(textwrap.dedent(inspect.getsource(one))).body
+        if isinstance(tree, (ast.FunctionDef, ast.ClassDef)) and (text := ast.get_docstring(tree)):
+            return text
+    return ""
 
 
 def _sections(doc: str, title: str) -> tuple[str, Mapping[str, str]]:

@@ -2,7 +2,10 @@
 """Docstrings and comments stand in the Verilog, in its words."""
 
 import ast
+import json
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -74,6 +77,31 @@ module with_documented_ports (
     )
     assert "\n\n// With MATERIALS=1 a row has 2 lines.\nalways @" in body
     assert body.endswith("end\n\nassign pair_column_offset = value;\n\nendmodule\n")
+
+
+def test_verilog_is_the_same_without_docstrings_and_in_a_second_conversion(tmp_path):
+    """`python -OO` drops docstrings from memory, not from the source; no name depends on what was converted before."""
+    convert = (
+        f"import sys; sys.path += [{str(Path(__file__).parent)!r}]\nfrom test_hdl_comments import converted_texts\n"
+    )
+    convert += "import json, pathlib; print(json.dumps(converted_texts(pathlib.Path(sys.argv[1]))))"
+    plain = converted_texts(tmp_path)
+    done = subprocess.run([sys.executable, "-OO", "-c", convert, tmp_path], capture_output=True, text=True, check=True)
+    assert json.loads(done.stdout) == plain == converted_texts(tmp_path)
+    assert "// Do nothing, 32 times in 5 cycles." in plain[0] and "function [5:0] total;" in plain[1]
+
+
+def converted_texts(directory: Path) -> list[str]:
+    """Convert blocks with docstrings, functions and labels."""
+    import test_hdl_programs as programs  # noqa: PLC0415 - its table would be a second one of this file's tests
+
+    config = configure(units=32)
+    top = with_documented_ports(bit(), bit(), Signs(), Place(config), 3, config)
+    texts = [converted(top, directory, vocabulary=VOCABULARY)["with_documented_ports"].path.read_text()]
+    for block_, makers, *_ in (one.values for one in programs.PROGRAMS if "functions" in one.id or "loops" in one.id):
+        made = block_(**{name: programs.argument(maker) for name, maker in makers.items()})
+        texts += [module.path.read_text() for module in converted(made, directory).values()]
+    return texts
 
 
 @pytest.mark.parametrize(

@@ -137,11 +137,6 @@ def test_python_without_checks_or_texts_is_refused(words: list[str]):
     assert "PYTHONOPTIMIZE leave out checks, and texts" in done.stderr
 
 
-def test_no_verilog_without_comments():
-    convert = "from raycaster.hdl.hierarchy import convert_hierarchy; convert_hierarchy(None, None, '')"
-    assert "UserError: python -OO leaves out the docstrings" in program("-OO", "-c", convert).stderr
-
-
 @pytest.mark.parametrize("name", ["picture_frame", "amaranth_picture_frame", "litex_soc", "fifo/fifo"])
 def test_an_example_without_arguments_prints_its_usage(name: str):
     done = program(str(ROOT / "examples" / f"{name}.py"), PATH=os.environ["PATH"])
