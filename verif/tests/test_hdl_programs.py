@@ -155,8 +155,8 @@ def functions_with_results(clk, a, q, y, z, up, kept):
     return instances()
 
 
-@program(clk=1, a=4, around=4, gate=1, y=4, kept=4, held=4)
-def functions_and_latches_read_signals(clk, a, around, gate, y, kept, held):
+@program(clk=1, a=4, only=4, around=4, gate=1, y=4, kept=4, late=4, held=4)
+def functions_and_latches_read_signals(clk, a, only, around, gate, y, kept, late, held):
     part = signed(6)
 
     def mixed(word):
@@ -171,6 +171,7 @@ def functions_and_latches_read_signals(clk, a, around, gate, y, kept, held):
     def keep():
         part.next = a - 9
         kept.next = mixed(a)
+        late.next = half(only & 13)
 
     @always_comb
     def combine():
