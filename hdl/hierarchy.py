@@ -69,6 +69,7 @@ class _Converter:
         self._kinds: dict[str, Any] = {}
         self.modules: dict[str, Module] = {}
         self._initial: dict[str, list[int]] = {}
+        self._texts: dict[tuple[Any, str], Module] = {}
         self.driven: set[int] = set()
 
     def module_of(self, block: Block) -> Module:
@@ -87,9 +88,16 @@ class _Converter:
             number += 1
             name = f"{first}_{number}"
         self._kinds[name] = kind  # the name is taken while the block's own parts are converted
-        self.modules[name] = self._convert_block(block, name, ports)
-        self._initial[name] = _initial(self.modules[name], ports)
-        return self.modules[name]
+        module = self._convert_block(block, name, ports)
+        alike = self._texts.setdefault((block.func, _text(module)), module)
+        if alike is not module:
+            # What differs between the two blocks is in no line of their Verilog.
+            module.path.unlink()
+            del self._kinds[name]
+            return alike
+        self.modules[name] = module
+        self._initial[name] = _initial(module, ports)
+        return module
 
     def _copy(self, given: GivenVerilog, block: Block) -> Module:
         """Return the module of given Verilog: one file for all instances, each with its own parameters."""
@@ -150,6 +158,11 @@ def _drivers(block: Block) -> Iterator[Any]:
         driven = list(_drivers(sub) if isinstance(sub, Block) else drivers_of(sub))
         yield from driven
         yield from (one for memory in driven if isinstance(memory, list) for one in memory)
+
+
+def _text(module: Module) -> str:
+    """Return a module's text without its own name."""
+    return re.sub(rf"\b{module.name}\b", "", module.path.read_text())
 
 
 def _initial(module: Module, ports: Mapping[str, SignalType]) -> list[int]:
