@@ -78,6 +78,7 @@ class Expressions:
         """
         self._tree, self._function_name = tree, function_name
         self._ranges = dict(arguments)
+        self._assumed: dict[str, int] = {}
         self._find_ranges()
 
     def refuse(self, node: Any, reason: str) -> NoReturn:
@@ -162,6 +163,8 @@ class Expressions:
         match node:
             case ast.Constant(value=int(value)):
                 return value
+            case ast.Name(id=name) if name in self._assumed:
+                return self._assumed[name]
             case ast.Name() | ast.Attribute():
                 known = self._object(node)
                 variable = isinstance(node, ast.Name) and (node.id in self._tree.vardict or node.id in self._ranges)
@@ -222,8 +225,7 @@ class Expressions:
                 return Range(known.min or 0, (known.max or 1 << len(known)) - 1)
             if isinstance(known, int) and not isinstance(known, bool):
                 return Range(-LARGEST_VARIABLE, LARGEST_VARIABLE)
-        bits, signed = self._type(node)
-        return Range(-(1 << bits - 1), (1 << bits - 1) - 1) if signed else Range(0, (1 << bits) - 1)
+        return _all_of(*self._type(node))
 
     def _range_of_operator(self, node: ast.BinOp) -> Range:
         one, other = self.range(node.left), self.range(node.right)
@@ -295,7 +297,11 @@ class Expressions:
         inner = Expressions(tree, self._function_name, dict(zip(tree.argnames, self.arguments(node), strict=True)))
         returns = [one.value for one in ast.walk(tree) if isinstance(one, ast.Return) and one.value is not None]
         if not returns or not _is_integer(tree.returnObj):
-            return inner.range(returns[0]) if returns and isinstance(tree.returnObj, bool) else _all_of(tree.returnObj)
+            return (
+                inner.range(returns[0])
+                if returns and isinstance(tree.returnObj, bool)
+                else _all_of(*_shape(tree.returnObj))
+            )
         around = inner.range(returns[0])
         for value in returns[1:]:
             around = _either(around, inner.range(value))
@@ -378,9 +384,7 @@ class Expressions:
                 parts = [node.left]
             case ast.BinOp():
                 parts = [node.left, node.right]
-            case ast.UnaryOp(op=ast.USub() | ast.UAdd()):
-                parts = [node.operand]
-            case ast.UnaryOp(op=ast.Invert()):
+            case ast.UnaryOp(op=ast.USub() | ast.UAdd() | ast.Invert()):
                 parts = [node.operand]
             case ast.IfExp():
                 parts = [node.body, node.orelse]
@@ -501,8 +505,6 @@ class Expressions:
         """Return a constant; a name of True or False is a bit."""
         if isinstance(value, bool):
             return f"$signed({{1'b0, 1'b{int(value)}}})" if context.signed else f"1'b{int(value)}"
-        if isinstance(value, EnumItemType):
-            return str(value)
         text = str(abs(value))
         if abs(value) >= 1 << 30:
             bits = max(INTEGER_BITS, Range(value, value).bits(context.signed))
@@ -564,23 +566,13 @@ class Expressions:
         """Return the bits of a slice, whose bounds may depend on loops' variables."""
         assert isinstance(node.slice, ast.Slice)
         lower, upper = node.slice.lower, node.slice.upper
-        bounds: list[Any] = [self.constant(lower) if lower else whole, self.constant(upper) if upper else 0]
-        if None not in bounds:
-            return bounds[0] - bounds[1]
-        names = {one.id for bound in (lower, upper) if bound for one in ast.walk(bound) if isinstance(one, ast.Name)}
         found = set()
         for start in (101, 211, 997):
-            values = {name: start + 37 * place for place, name in enumerate(sorted(names))}
-            known = {name: self._tree.symdict.get(name) for name in names}
-            values |= {name: value for name, value in known.items() if isinstance(value, int)
-                       and name not in self._tree.vardict}  # fmt: skip
-            codes = [compile(ast.Expression(bound), "", "eval") if bound else None for bound in (lower, upper)]
-            try:
-                high, low = (eval(code, {"__builtins__": {}}, values) if code else None for code in codes)
-            except (NameError, TypeError):
-                break
-            found.add((whole if high is None else high) - (low or 0))
-        if len(found) != 1:
+            self._assumed = {name: start + 37 * place for place, name in enumerate(self._ranges)}
+            high, low = self.constant(lower) if lower else whole, self.constant(upper) if upper else 0
+            found.add(None if None in (high, low) else high - low)
+        self._assumed = {}
+        if len(found) != 1 or None in found:
             self.refuse(node, "the number of these bits must be constant; shift the signal, and take its lowest bits")
         return found.pop()
 
@@ -681,7 +673,7 @@ class Expressions:
             name in tree.vardict and (name not in tree.nonlocaldict or name in internals.state_of(tree))
         ):
             return name
-        if isinstance(known, SignalType):
+        if isinstance(known, SignalType) and internals.has_name(known):
             return str(known)
         if memory := is_memory(known):
             return memory
@@ -729,8 +721,8 @@ def _shape(known: Any) -> tuple[int, bool]:
     return (INTEGER_BITS, True) if _is_integer(known) else (1, False)
 
 
-def _all_of(known: Any) -> Range:
-    bits, signed = _shape(known)
+def _all_of(bits: int, signed: bool) -> Range:
+    """Return the values of a type."""
     return Range(-(1 << bits - 1), (1 << bits - 1) - 1) if signed else Range(0, (1 << bits) - 1)
 
 

@@ -96,6 +96,11 @@ def set_name(signal: Any, name: str | None) -> None:
         signal._name = name
 
 
+def has_name(signal: Any) -> bool:
+    """Return True if MyHDL prints a name for a signal, not its value."""
+    return signal._name is not None
+
+
 def analysed(processes: Iterable[Process]) -> list[Any]:
     """Return the syntax trees of processes, to which MyHDL has added the object of each name.
 
