@@ -615,8 +615,11 @@ class Expressions:
 
     def _bit(self, value: ast.expr, index: ast.expr) -> str:
         constant, (text, offset) = self.constant(index), self._base(value)
-        place = self.text(index) if constant is None else str(constant + offset)
-        return f"{text}[{place}{f' + {offset}' if offset and constant is None else ''}]"
+        return f"{text}[{self._moved(index, offset) if constant is None else constant + offset}]"
+
+    def _moved(self, index: ast.expr, offset: int) -> str:
+        """Return an index, moved by the lowest bit of a slice."""
+        return f"{self._root(index, None)} + {offset}" if offset else self.text(index)
 
     def _bits(self, node: ast.Subscript, lower: ast.expr | None, upper: ast.expr | None) -> str:
         if isinstance(node.value, ast.Call) and (_called(node.value) is intbv or _is_modbv(_called(node.value))):
@@ -632,8 +635,7 @@ class Expressions:
         width = self._width(node, bits)
         if low is None:
             assert upper is not None
-            text_of_low = self.text(upper)
-            return f"{text}[{text_of_low}{f' + {offset}' * bool(offset)} +: {width}]"
+            return f"{text}[{self._moved(upper, offset)} +: {width}]"
         high = low + offset + width - 1
         if width < 1 or low + width > bits:
             self.refuse(node, f"bits {low + width - 1} to {low} are not all within 0 to {bits - 1}; correct the bounds")

@@ -292,7 +292,7 @@ def bits_and_variables(clk, a, index, k, y, bits, picked, kept, mode):
         for i in range(6):
             y.next[2 * i + 2 : 2 * i] = a[2 * i + 2 : 2 * i] ^ (i % 4)
         bits.next[0] = a[index]
-        bits.next[1] = upper[7] ^ upper[index[3:]]
+        bits.next[1] = upper[7] ^ upper[index[3:]] ^ upper[(index ^ k) & 7]
         bits.next[4:2] = upper[6:2][3:1]
 
     @always_comb
