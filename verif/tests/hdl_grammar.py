@@ -53,7 +53,7 @@ KINDS = ("comb", "clocked", "seq")
 RESETS = ("", *(f"ResetSignal({1 - on}, active={on}, isasync={late})" for late in (False, True) for on in (1, 0)))
 STATES = ("IDLE", "RUN", "STOP", "PAUSE")
 ODD_STATES = ("end", "go0", "count", "clk", "begin", "a", *STATES)
-ODD_NAMES = ("begin", "count", "output", "top", "automatic", "IDLE")
+ODD_NAMES = ("begin", "count", "output", "größe", "top", "automatic", "IDLE")
 """Names that Verilog may not accept, or that something else may have."""
 
 ODD_STATEMENTS = (
@@ -625,7 +625,7 @@ class Block(Expressions):
         """Draw up to `most` parts."""
         for _ in range(most):
             self.one_of(
-                self.a_process, self.a_process, self.a_process, self.a_process, self.a_list,
+                self.a_process, self.a_process, self.a_process, self.a_process, self.a_function, self.a_list,
                 self.a_tuple, self.a_machine, self.an_instance, self.by_parts, self.a_shadow, self.a_record,
                 self.an_interface, self.inner_block,
             )()  # fmt: skip
