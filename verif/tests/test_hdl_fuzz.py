@@ -355,7 +355,7 @@ def test_a_planted_fault_is_found_and_shrunk(tmp_path, monkeypatch):
     """Verilog with | instead of & differs, and the smallest program with this fault has one of them."""
     right = verilog
     monkeypatch.setitem(globals(), "verilog", lambda case: right(case).replace(" & ", " | "))
-    cases = [Case(name, drawn(name)) for name in (f"p{seed()}_{number}" for number in range(60))]
+    cases = [Case(name, drawn(name)) for name in (f"p0_{number}" for number in range(60))]
     wrong = [case for case in compared(cases, tmp_path / "batch", ["icarus"]) if case.outcome == "icarus differs"]
     one = shrunk(wrong[0], tmp_path / "shrunk")
     assert one.outcome == "icarus differs"
