@@ -234,10 +234,14 @@ class Expressions:
     def quotient(self, depth: int) -> Value:
         one, divisor = self.expression(depth), self.one_of(*DIVISORS)
         one = one if one.low >= 0 or self.once_in(8) else self.fitted(one, full(min(one.width, 8)))
-        by = Value(f"({divisor})" if divisor < 0 else str(divisor), divisor, divisor)
+        by = Value(self.divisor(divisor), divisor, divisor)
         if self.one_of("%", "%", "//") == "//":
             return self.binary(one, "//", by)
         return Value(f"({one.text} % {by.text})", min(divisor + 1, 0), max(divisor - 1, 0))
+
+    def divisor(self, number: int) -> str:
+        power = number > 0 and number & number - 1 == 0 and self.once_in(3)
+        return f"(1 << {number.bit_length() - 1})" if power else f"({number})" if number < 0 else str(number)
 
     def logic(self, depth: int) -> Value:
         one, other, sign = self.expression(depth), self.expression(depth), self.one_of(*"&|^")
@@ -301,7 +305,7 @@ class Expressions:
         if value.bits > size and value.text[-1] != ")" and self.once_in(2):
             text = f"{value.text}[{size}:]"
         elif self.once_in(2 if value.low >= 0 else 10):
-            text = f"({value.text} % {1 << size})"
+            text = f"({value.text} % {self.divisor(1 << size)})"
         else:
             text = f"({value.text} & {(1 << size) - 1})"
         return Value(f"({text} - {-into.low})" if into.low else text, into.low, into.high)
@@ -568,7 +572,7 @@ class Block(Expressions):
     def a_shadow(self) -> None:
         """Draw a constant, a slice of a signal, signals side by side, or a register that begins as a signal."""
         signals = [value for value in self.scope.values if value.signal and value.bits > 1 and value.low == 0]
-        name, form = self.name("part"), self.one_of("slice", "joined", "tied", "copy") if signals else "tied"
+        name, form = self.name("part"), self.one_of("slice", "joined", "tied", "copy", "copy") if signals else "tied"
         some = [self.one_of(*signals) for _ in range(self.one_of(2, 3, 1))] if signals else []
         if form == "tied":
             text, value = f"tied({self.number(0, 3)}, 3)", full(3)
@@ -627,7 +631,7 @@ class Block(Expressions):
             self.one_of(
                 self.a_process, self.a_process, self.a_process, self.a_process, self.a_function, self.a_list,
                 self.a_tuple, self.a_machine, self.an_instance, self.by_parts, self.a_shadow, self.a_record,
-                self.an_interface, self.inner_block,
+                self.an_interface, self.inner_block, self.inner_block,
             )()  # fmt: skip
             if self.once_in(3):
                 break
@@ -652,7 +656,7 @@ class Block(Expressions):
         (self.parts if closure else self.program.texts).append(text)
         for _ in range(1 if words or self.once_in(2) else 2):
             place = self.name("group") if group else ""
-            values = {one: value.text for one, value in given.items()} | {"group": place}
+            values = {one: self.alike(value) for one, value in given.items()} | {"group": place}
             for output in outputs:
                 values[output] = f"{place}.{output}" if group else self.name("y")
                 signal = replace(inner.made[output], text=values[output])
@@ -663,6 +667,11 @@ class Block(Expressions):
                     self.made[signal.text] = signal
             self.declared += [f"{place} = {group}()"] if group else []
             self.parts.append(f"{self.name('part')} = {name}({', '.join(values.get(one, one) for one in parameters)})")
+
+    def alike(self, value: Value) -> str:
+        """Draw a signal with the range of another."""
+        others = [one for one in self.scope.values if one.signal and replace(one, text=value.text) == value]
+        return self.one_of(value, *others).text
 
     def finished(self, name: str, inputs: Sequence[str]) -> tuple[list[str], list[str], str]:
         """Return all ports, the names of the outputs, and the text of the block; unused inputs are no ports."""
