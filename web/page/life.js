@@ -120,7 +120,7 @@ const RayCasterLife = (() => {
     for (const { kind, clock, bounce, rectangle, shades } of eventsOf(recording)) {
       const ray = (life.bounces[bounce] ??= { values: {}, tried: [] });
       if (kind === "shade") {
-        const [before, after] = [clock, clock + 1].map((at) => recording.values(recording.probe("light"), at)?.[1]);
+        const [before, after] = [clock, clock + 1].map((at) => recording.values(recording.probe("light"), at)?.[0]);
         if (!before && after) ray.shades = shades;
       }
       let values = kind === "done" ? life.values : ray.values;
@@ -132,6 +132,8 @@ const RayCasterLife = (() => {
       }
       for (const probe of taps.probes) {
         if (probe.event === kind) values[probe.quantity] = recording.values(probe, clock + probe.late);
+        // The shadow ray stays as it was aimed until the colour is added.
+        if (probe.event === "aimed" && kind === "blend") values[probe.quantity] = recording.values(probe, clock);
       }
     }
     // Don't care what the unit finds after its ray has ended.
@@ -148,7 +150,7 @@ const RayCasterLife = (() => {
       const isExact = "nearest t" in seen.values;
       bounce.denominator = isExact ? bounce.distance[1] : 1 << fractionBits;
       const { light } = bounce.values;
-      if (light) bounce.shadow = !light[0] ? DARK_SIDE : light[1] ? (bounce.shades ?? null) : LIT;
+      if (light) bounce.shadow = !light[1] ? DARK_SIDE : light[0] ? (bounce.shades ?? null) : LIT;
       bounce.point = isExact ? pointOnRay(bounce, magnitudes, bounce.distance) : seen.values["nearest point"];
     }
     return life;
