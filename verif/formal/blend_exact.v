@@ -18,7 +18,7 @@
 // designs = ["beam two reflections=1,3,4"]
 // [faults]
 // "beam-vga240-s2-u1-r2-m2-c8" = ["colour_mean_1.other[8] 0", "colour_mean.reflections edge",
-//   "colour_seen_1.reached 1"]
+//   "colour_seen.reached 1"]
 // "beam-vga240-s2-u1-r2-m1-c8-materials" = ["colour_mix.apart short", "colour_mix.mirror[0] unless mirror[1]",
 //   "colour_seen.mirror as seen_mirror"]
 
