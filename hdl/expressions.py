@@ -112,7 +112,8 @@ class Expressions:
         if isinstance(target, ast.Name):
             self.check_integer(value, self._object(target), target.id)
         modulo = self._power(value.right) if isinstance(value, ast.BinOp) and isinstance(value.op, ast.Mod) else None
-        if modulo == bits and isinstance(value, ast.BinOp) and isinstance(value.right, ast.BinOp):
+        folded = self.constant(value) is not None
+        if modulo == bits and not folded and isinstance(value, ast.BinOp) and isinstance(value.right, ast.BinOp):
             value = value.left  # an assignment wraps around by itself
         return self._place(target), self.text(value, bits)
 

@@ -318,8 +318,8 @@ def bits_and_variables(clk, a, index, k, y, bits, picked, kept, mode):
     return instances()
 
 
-@program(a=6, first=4, third=4, pairs=4, ones=4, exact=5, narrow=4, both=1)
-def loops_end_early(a, first, third, pairs, ones, exact, narrow, both):
+@program(a=6, first=4, third=4, pairs=4, ones=4, exact=5, narrow=4, both=1, rest=2)
+def loops_end_early(a, first, third, pairs, ones, exact, narrow, both, rest):
     @always_comb
     def find():
         first.next = 9
@@ -368,6 +368,7 @@ def loops_end_early(a, first, third, pairs, ones, exact, narrow, both):
         exact.next = (a[3:] + a[6:3] + 1) % (1 << 3)
         narrow.next = (a + 9) % (1 << 4)
         both.next = not (not a[0]) and a[6:3] != 2  # noqa: SIM208
+        rest.next = 4294967297 % (1 << 2)
 
     return instances()
 
