@@ -7,9 +7,10 @@ rest: ports, signals and instances. Blocks of one function share a module if the
 
 from __future__ import annotations
 
+import functools
 import inspect
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -56,7 +57,7 @@ def convert_hierarchy(
     """
     with elaboration(), faults_in_one_line():
         converter = _Converter(directory, header, prefix, vocabulary or {})
-        converter.driven = {*map(id, _drivers(top)), *map(id, block_ports(top).values())}
+        converter.driven = {*map(id, converter.drivers(top)), *map(id, converter.ports(top).values())}
         module = converter.module_of(top)
         for name in (top.func.__name__, *(port.name for port in module.ports)) if vhdl else ():
             check_keyword(top, name, vhdl=True)
@@ -71,6 +72,16 @@ class _Converter:
         self._initial: dict[str, list[int]] = {}
         self._texts: dict[tuple[Any, str], Module] = {}
         self.driven: set[int] = set()
+        self.ports = functools.cache(block_ports)
+
+    def drivers(self, block: Block) -> Iterator[Any]:
+        """Yield the signals, and the lists of signals, that something in a block drives."""
+        if given := getattr(block.func, "given_verilog", None):
+            yield from (signal for name, signal in self.ports(block).items() if name in given.outputs)
+        for sub in block.subs:
+            driven = list(self.drivers(sub) if isinstance(sub, Block) else drivers_of(sub))
+            yield from driven
+            yield from (one for memory in driven if isinstance(memory, list) for one in memory)
 
     def module_of(self, block: Block) -> Module:
         """Return the block's module, after writing it unless a block of the same kind has one."""
@@ -78,7 +89,7 @@ class _Converter:
             return self._copy(given, block)
         if block.verilog_code is not None:
             raise refusal(block, "verilog_code has no ports; write its text as a module, and use given_verilog")
-        kind, ports = _kind(block, self.driven), block_ports(block)
+        kind, ports = self._kind(block), self.ports(block)
         for known, module in self.modules.items():
             if self._kinds[known] == kind and self._initial[known] == _initial(module, ports):
                 return module
@@ -101,7 +112,7 @@ class _Converter:
 
     def _copy(self, given: GivenVerilog, block: Block) -> Module:
         """Return the module of given Verilog: one file for all instances, each with its own parameters."""
-        given_name, ports = block.func.__name__, block_ports(block)
+        given_name, ports = block.func.__name__, self.ports(block)
         name = prefixed(given_name, self._prefix)
         if strangers := given.outputs - set(ports):
             raise refusal(
@@ -143,21 +154,55 @@ class _Converter:
             if instance in instances:
                 raise refusal(block, f"two instances would be called {instance}; rename a block")
             instances[instance] = modules[id(sub)].name
-            parts.append(Instance(modules[id(sub)], f"{instance}_i", _connections(sub, modules[id(sub)], ports)))
+            connections = _connections(self.ports(sub), modules[id(sub)], ports)
+            parts.append(Instance(modules[id(sub)], f"{instance}_i", connections))
         contents = Contents(block, parts, self.driven)
         path = self._directory / f"{name}.v"
         path.write_text(module_text(contents, name, self._header.format(module=name), self._vocabulary))
         return Module(name, path, contents.ports, instances)
 
+    def _kind(self, block: Block) -> tuple[Any, ...]:
+        """Return what determines a block's module.
 
-def _drivers(block: Block) -> Iterator[Any]:
-    """Yield the signals, and the lists of signals, that something in a block drives."""
-    if given := getattr(block.func, "given_verilog", None):
-        yield from (signal for name, signal in block_ports(block).items() if name in given.outputs)
-    for sub in block.subs:
-        driven = list(_drivers(sub) if isinstance(sub, Block) else drivers_of(sub))
-        yield from driven
-        yield from (one for memory in driven if isinstance(memory, list) for one in memory)
+        These are its function, its arguments, which ports are the same signal, and what its processes and the blocks in
+        it begin with.
+
+        A signal counts by its shape, a record by its layout, an interface by its class and all its attributes, anything
+        else by its value.
+        """
+        numbers: dict[int, int] = {}
+        ports = [id(signal) for signal in self.ports(block).values()]
+        same = tuple(numbers.setdefault(port, number) for number, port in enumerate(ports))
+        # Signals that nothing drives are a table, whose contents count, unless they are connected as numbers.
+        tables = {id(one) for one in self.ports(block).values() if type(one) is SignalType} - self.driven
+        return block.func, _description(block_arguments(block)), same, [*self._beginnings(block, {*ports} - tables)]
+
+    def _beginnings(self, block: Block, ports: set[int]) -> Iterator[Any]:
+        """Yield what processes in a block read from around them: numbers, and initial values except those of ports."""
+        known: dict[int, int] = {}
+
+        def beginning(value: Any) -> Any:
+            if isinstance(value, SignalType):
+                return id(value) in ports or _Constant(value.val)
+            if isinstance(value, (list, tuple)):
+                return [beginning(element) for element in value]
+            parts = []
+            if inspect.isfunction(value):
+                parts = list(inspect.getclosurevars(value).nonlocals.values())
+            elif type(value).__eq__ is object.__eq__:
+                parts = list(getattr(value, "__dict__", {}).values())
+            else:
+                return _Constant(value)
+            first = id(value) not in known
+            number = known.setdefault(id(value), len(known))
+            return number, type(value), [beginning(part) for part in parts * first]
+
+        for sub in block.subs:
+            if isinstance(sub, Block):
+                yield [beginning(signal) for signal in self.ports(sub).values()]
+                yield from self._beginnings(sub, ports)
+            else:
+                yield type(sub), beginning(sub.funcobj)
 
 
 def _text(module: Module) -> str:
@@ -170,9 +215,10 @@ def _initial(module: Module, ports: Mapping[str, SignalType]) -> list[int]:
     return [int(ports[port.name].val) for port in module.ports if port.output]
 
 
-def _connections(child: Block, module: Module, parent_ports: Mapping[str, SignalType]) -> dict[str, Connection]:
-    """Return what an instance's ports connect to in its parent."""
-    signals = block_ports(child)
+def _connections(
+    signals: Mapping[str, SignalType], module: Module, parent_ports: Mapping[str, SignalType]
+) -> dict[str, Connection]:
+    """Return what an instance's ports connect to in its parent, from the signals at its ports and the parent's."""
     passed_on = {id(signal) for signal in parent_ports.values()}
     connections: dict[str, Connection] = {}
     for port in module.ports:
@@ -202,50 +248,6 @@ class _Constant:
         mine, its = self.value, other.value
         # An array's == returns an array, not a bool.
         return mine is its or ((mine == its) is True and repr(mine) == repr(its))
-
-
-def _kind(block: Block, driven: Collection[int]) -> tuple[Any, ...]:
-    """Return what determines a block's module: its function, its arguments, which ports are the same signal, and what
-    its processes and the blocks in it begin with.
-
-    A signal counts by its shape, a record by its layout, an interface by its class and all its attributes, anything
-    else by its value.
-    """
-    numbers: dict[int, int] = {}
-    ports = [id(signal) for signal in block_ports(block).values()]
-    same = tuple(numbers.setdefault(port, number) for number, port in enumerate(ports))
-    # Signals that nothing drives are a table, whose contents count, unless they are connected as numbers.
-    tables = {id(one) for one in block_ports(block).values() if type(one) is SignalType} - {*driven}
-    return block.func, _description(block_arguments(block)), same, [*_beginnings(block, {*ports} - tables)]
-
-
-def _beginnings(block: Block, ports: set[int]) -> Iterator[Any]:
-    """Yield what the processes in a block read from around them: numbers, and initial values except those of ports."""
-
-    known: dict[int, int] = {}
-
-    def beginning(value: Any) -> Any:
-        if isinstance(value, SignalType):
-            return id(value) in ports or _Constant(value.val)
-        if isinstance(value, (list, tuple)):
-            return [beginning(element) for element in value]
-        parts = []
-        if inspect.isfunction(value):
-            parts = list(inspect.getclosurevars(value).nonlocals.values())
-        elif type(value).__eq__ is object.__eq__:
-            parts = list(getattr(value, "__dict__", {}).values())
-        else:
-            return _Constant(value)
-        first = id(value) not in known
-        number = known.setdefault(id(value), len(known))
-        return number, type(value), [beginning(part) for part in parts * first]
-
-    for sub in block.subs:
-        if isinstance(sub, Block):
-            yield [beginning(signal) for signal in block_ports(sub).values()]
-            yield from _beginnings(sub, ports)
-        else:
-            yield type(sub), beginning(sub.funcobj)
 
 
 def _description(value: Any) -> Any:
