@@ -11,6 +11,7 @@ count, and they are right for any widths, as in `total.next = a + b + c`.
 from __future__ import annotations
 
 import ast
+import functools
 import operator
 import re
 from collections.abc import Callable, Iterator, Mapping
@@ -85,10 +86,8 @@ class Expressions:
         """Refuse a line."""
         raise UserError(f"{self._tree.sourcefile}:{self._tree.lineoffset + node.lineno}: {reason}")
 
-    # Statements.
-
     def text(self, node: ast.expr, bits: int | None = None) -> str:
-        """Return an expression that is assigned to so many bits; or of which all bits count, such as a condition."""
+        """Return an expression. Only its lowest `bits` count; in a condition, for instance, all do (None)."""
         constant = self.constant(node)
         if type(constant) is int and bits and abs(constant) >= 1 << 30:
             return f"{'-' * (constant < 0)}{bits}'h{abs(constant):x}"
@@ -118,11 +117,15 @@ class Expressions:
         return self._place(target), self.text(value, bits)
 
     def check_integer(self, value: ast.expr, known: Any, name: str) -> None:
-        """Refuse a value that a Verilog integer does not hold, for a variable or result of this type."""
-        bits = self.range(value).bits(True)
+        """Refuse a value that a Verilog integer, or a bit, does not hold, for a variable or result of this type."""
+        around = self.range(value)
+        bits = around.bits(True)
         if _is_integer(known) and bits > INTEGER_BITS:
             self.refuse(value, f"{name} is an integer of {INTEGER_BITS} bits in Verilog, and has {bits} here; use an "
                         "intbv(0, min=..., max=...)")  # fmt: skip
+        if isinstance(known, bool) and _either(around, Range(0, 1)) != Range(0, 1):
+            self.refuse(value, f"{name} is one bit in Verilog, and may be {around.low} to {around.high} here; write "
+                        "not for a bit")  # fmt: skip
 
     def initial(self, value: Any) -> str:
         """Return an initial value."""
@@ -156,8 +159,6 @@ class Expressions:
         """Return True for a word of a memory."""
         known = self._object(node.value)
         return bool(is_memory(known)) or type(known).__name__ == "_Ram"
-
-    # Values.
 
     def constant(self, node: ast.expr | None) -> Any:
         """Return a number, or True or False; None for an expression that is not constant."""
@@ -297,22 +298,13 @@ class Expressions:
         tree = _tree(node)
         inner = Expressions(tree, self._function_name, dict(zip(tree.argnames, self.arguments(node), strict=True)))
         returns = [one.value for one in ast.walk(tree) if isinstance(one, ast.Return) and one.value is not None]
-        if not returns or not _is_integer(tree.returnObj):
-            return (
-                inner.range(returns[0])
-                if returns and isinstance(tree.returnObj, bool)
-                else _all_of(*_shape(tree.returnObj))
-            )
-        around = inner.range(returns[0])
-        for value in returns[1:]:
-            around = _either(around, inner.range(value))
-        return around
+        if not returns or not isinstance(tree.returnObj, int):
+            return _all_of(*_shape(tree.returnObj))
+        return functools.reduce(_either, map(inner.range, returns))
 
     def arguments(self, node: ast.Call) -> list[Range]:
         """Return the ranges of a call's arguments."""
         return [self.range(argument) for argument in node.args]
-
-    # Types in Verilog.
 
     def _object(self, node: Any) -> Any:
         """Return what MyHDL knows of an expression: its signal, its memory, or a value of its type."""
@@ -437,8 +429,6 @@ class Expressions:
         value = self.constant(node)
         return value.bit_length() - 1 if value and value > 0 and value & value - 1 == 0 else None
 
-    # Text.
-
     def _root(self, node: ast.expr, bits: int | None) -> str:
         """Return an expression with a context of its own; `bits` is the number of its lowest bits that count."""
         return self._emit(node, self._context([node], bits), bits)
@@ -481,7 +471,7 @@ class Expressions:
         return text
 
     def _fits(self, node: ast.expr, context: Context, needed: int | None) -> None:
-        """Refuse a result of which bits are lost that are needed."""
+        """Refuse a result that loses bits that the context needs."""
         own = self.range(node)
         bits = own.bits(context.signed)
         if needed is None and bits > context.bits:
@@ -593,7 +583,7 @@ class Expressions:
                 if table_of(known) is not None:
                     self.refuse(node, f"Verilog has no tables in expressions; assign {ast.unparse(node)} to a signal")
                 if isinstance(known, tuple):
-                    self.refuse(node, f"{ast.unparse(value)} is a tuple, of which Verilog has numbers only; "
+                    self.refuse(node, f"{ast.unparse(value)} is a tuple, and Verilog has tables of numbers only; "
                                 "use a list of signals, or if and elif")  # fmt: skip
                 around = self.range(index)
                 if around.low < 0:

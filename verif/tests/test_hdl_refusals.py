@@ -86,6 +86,10 @@ def process(statements: str) -> str:
         ),
         ("def double(x):\n    result.next = x\n" + process("double(a)"), "a function cannot drive"),
         (
+            "def flip(x):\n    return ~x\n" + process("result.next = flip(a > b)"),
+            "the result is one bit in Verilog, and may be -2 to -1 here",
+        ),
+        (
             "größe = unsigned(4)\n"
             + process("result.next = größe").replace("process", "other")
             + "@always_comb\ndef go():\n    größe.next = a\n",
