@@ -25,7 +25,6 @@ wire reference, first_locked, last_locked;
 
 assign locked = first_locked & last_locked;
 
-// nextpnr sets missing analogue parameters to 0, for example to no charge pump; these values come from ecppll.
 generate
     if (FIRST_DIV == 0) begin : one
         assign reference = clk_in;
@@ -33,72 +32,65 @@ generate
     end else begin : two
         wire feedback;
 
-        (* ICP_CURRENT="12" *) (* LPF_RESISTOR="8" *) (* MFG_ENABLE_FILTEROPAMP="1" *) (* MFG_GMCREF_SEL="2" *)
-        EHXPLLL #(
-            .CLKI_DIV(FIRST_CLKI_DIV),
-            .CLKFB_DIV(1),
-            .FEEDBK_PATH("CLKOS"),
-            .CLKOP_ENABLE("ENABLED"),
-            .CLKOP_DIV(FIRST_DIV),
-            .CLKOP_CPHASE(FIRST_DIV - 1),
-            .CLKOP_FPHASE(0),
-            .CLKOS_ENABLE("ENABLED"),
-            .CLKOS_DIV(FIRST_FB_DIV),
-            .CLKOS_CPHASE(FIRST_FB_DIV - 1),
-            .CLKOS_FPHASE(0),
-            .CLKOS2_ENABLE("DISABLED"),
-            .CLKOS3_ENABLE("DISABLED"),
-            .OUTDIVIDER_MUXA("DIVA"),
-            .OUTDIVIDER_MUXB("DIVB"),
-            .DPHASE_SOURCE("DISABLED"),
-            .PLLRST_ENA("DISABLED"),
-            .INTFB_WAKE("DISABLED"),
-            .STDBY_ENABLE("DISABLED")
+        tuned_pll #(
+            .CLKI_DIV(FIRST_CLKI_DIV), .CLKFB_DIV(1), .FEEDBK_PATH("CLKOS"), .CLKOP_DIV(FIRST_DIV),
+            .CLKOS_DIV(FIRST_FB_DIV), .PLLRST_ENA("DISABLED")
         ) pll (
-            .CLKI(clk_in),
-            .CLKFB(feedback),
-            .RST(1'b0),
-            .STDBY(1'b0),
-            .PHASESEL0(1'b0),
-            .PHASESEL1(1'b0),
-            .PHASEDIR(1'b1),
-            .PHASESTEP(1'b1),
-            .PHASELOADREG(1'b1),
-            .PLLWAKESYNC(1'b0),
-            .ENCLKOP(1'b0),
-            .CLKOP(reference),
-            .CLKOS(feedback),
-            .LOCK(first_locked)
+            .reset(1'b0), .clk_in(clk_in), .feedback(feedback), .clk_op(reference), .clk_os(feedback),
+            .locked(first_locked)
         );
     end
 endgenerate
 
-// A phase of the divider minus one aligns the rising edges. Without a reference, the PLL is held in reset.
+// Without a reference, the PLL is held in reset.
+tuned_pll #(
+    .CLKI_DIV(CLKI_DIV), .CLKFB_DIV(CLKFB_DIV), .FEEDBK_PATH("CLKOP"), .CLKOP_DIV(SHIFT_DIV), .CLKOS_DIV(CLK_DIV),
+    .PLLRST_ENA("ENABLED")
+) pll (
+    .reset(!first_locked), .clk_in(reference), .feedback(shift_clk), .clk_op(shift_clk), .clk_os(clk),
+    .locked(last_locked)
+);
+
+endmodule
+
+// A PLL with two outputs, whose rising edges are aligned, as the phase of a divider minus one does. nextpnr sets missing
+// analogue parameters to 0, for example to no charge pump; these values come from ecppll.
+module tuned_pll #(
+    parameter CLKI_DIV = 1, CLKFB_DIV = 1, FEEDBK_PATH = "CLKOP", CLKOP_DIV = 8, CLKOS_DIV = 8, PLLRST_ENA = "DISABLED"
+) (
+    input  wire reset,
+    input  wire clk_in,
+    input  wire feedback,               // the output that FEEDBK_PATH names
+    output wire clk_op,
+    output wire clk_os,
+    output wire locked
+);
+
 (* ICP_CURRENT="12" *) (* LPF_RESISTOR="8" *) (* MFG_ENABLE_FILTEROPAMP="1" *) (* MFG_GMCREF_SEL="2" *)
 EHXPLLL #(
     .CLKI_DIV(CLKI_DIV),
     .CLKFB_DIV(CLKFB_DIV),
-    .FEEDBK_PATH("CLKOP"),
+    .FEEDBK_PATH(FEEDBK_PATH),
     .CLKOP_ENABLE("ENABLED"),
-    .CLKOP_DIV(SHIFT_DIV),
-    .CLKOP_CPHASE(SHIFT_DIV - 1),
+    .CLKOP_DIV(CLKOP_DIV),
+    .CLKOP_CPHASE(CLKOP_DIV - 1),
     .CLKOP_FPHASE(0),
     .CLKOS_ENABLE("ENABLED"),
-    .CLKOS_DIV(CLK_DIV),
-    .CLKOS_CPHASE(CLK_DIV - 1),
+    .CLKOS_DIV(CLKOS_DIV),
+    .CLKOS_CPHASE(CLKOS_DIV - 1),
     .CLKOS_FPHASE(0),
     .CLKOS2_ENABLE("DISABLED"),
     .CLKOS3_ENABLE("DISABLED"),
     .OUTDIVIDER_MUXA("DIVA"),
     .OUTDIVIDER_MUXB("DIVB"),
     .DPHASE_SOURCE("DISABLED"),
-    .PLLRST_ENA("ENABLED"),
+    .PLLRST_ENA(PLLRST_ENA),
     .INTFB_WAKE("DISABLED"),
     .STDBY_ENABLE("DISABLED")
 ) pll (
-    .CLKI(reference),
-    .CLKFB(shift_clk),
-    .RST(!first_locked),
+    .CLKI(clk_in),
+    .CLKFB(feedback),
+    .RST(reset),
     .STDBY(1'b0),
     .PHASESEL0(1'b0),
     .PHASESEL1(1'b0),
@@ -107,9 +99,9 @@ EHXPLLL #(
     .PHASELOADREG(1'b1),
     .PLLWAKESYNC(1'b0),
     .ENCLKOP(1'b0),
-    .CLKOP(shift_clk),
-    .CLKOS(clk),
-    .LOCK(last_locked)
+    .CLKOP(clk_op),
+    .CLKOS(clk_os),
+    .LOCK(locked)
 );
 
 endmodule

@@ -461,11 +461,11 @@ def test_the_pll_makes_the_standards_clock(case, project):
 @pytest.mark.parametrize(
     ("board", "right", "wrong"),
     [
-        ("ulx3s", ".CLKFB(shift_clk)", ".CLKFB(1'b0)"),
-        ("ulx3s", ".CLKFB(shift_clk)", ".CLKFB(clk)"),
-        ("ulx3s", ".CLKFB(feedback)", ".CLKFB(reference)"),
+        ("ulx3s", ".feedback(shift_clk)", ".feedback(1'b0)"),
+        ("ulx3s", ".feedback(shift_clk)", ".feedback(clk)"),
+        ("ulx3s", ".feedback(feedback)", ".feedback(reference)"),
         ("ulx3s", '.FEEDBK_PATH("CLKOS")', '.FEEDBK_PATH("CLKOP")'),
-        ("ulx3s", ".RST(!first_locked)", ".RST(first_locked)"),
+        ("ulx3s", ".reset(!first_locked)", ".reset(first_locked)"),
         ("ulx3s", "first_locked & last_locked", "1'b0"),
         ("ulx3s", ".CLKI_DIV(FIRST_CLKI_DIV)", ".CLKI_DIV(3)"),
         ("tang_nano_20k", ".RESET(1'b0)", ".RESET(1'b1)"),
