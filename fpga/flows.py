@@ -128,8 +128,8 @@ _ECP5_OSCILLATOR = 400, 800
 def _ecp5_pll(source: float, wanted: float, per_clk: float) -> Pll | None:
     """Set EHXPLLL, with feedback from the shift clock: nearest frequency first, then fastest phase comparison.
 
-    Most boards' oscillator gives no standard's pixel clock within the limits. A first PLL then makes the nearest
-    reference of which the shift clock is a multiple.
+    Most boards' oscillator gives no standard's pixel clock within the limits. A first PLL then makes a
+    reference, and the shift clock is a multiple of that.
     """
     one = _ecp5_last(source, wanted, per_clk)
     if one is not None and abs(one[1] / wanted - 1) <= TOLERANCE:

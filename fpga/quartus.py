@@ -252,5 +252,5 @@ def main(argv: Sequence[str] | None = None) -> None:
     screen = design.configuration.screen_geometry
     if screen.standard_hz:
         made, standard = screen.pixel_hz / 1e6, screen.standard_hz / 1e6
-        print(f"pixel clock: {made:g} MHz; the standard's is {standard:g} MHz, and a monitor may refuse the other")
+        print(f"pixel clock: {made:g} MHz; the standard has {standard:g} MHz, and a monitor may refuse this one")
     print(printable(compile_project(board, directory)))

@@ -15,10 +15,10 @@ ODD_FOR_TOOLS = '"\\'
 """Printable characters in a path with which Verilator fails to read or write files there."""
 
 ODD_FOR_SHELLS = f"{ODD_FOR_TOOLS} '`$&;|<>()*?[]{{}}#"
-"""Those in its own path with which Verilator does not start, as its wrapper gives the path to a shell."""
+"""Characters in the path of Verilator with which it does not start: its wrapper gives the path to a shell."""
 
 ODD_FOR_INSTALLING = f"{ODD_FOR_SHELLS}%:"
-"""Those in the path of a clone with which Verilator, pip or venv fails."""
+"""Characters in the path of a clone with which Verilator, pip or venv fails."""
 
 NAMES = {" ": "a space", "\n": "a line's end", "'": "an apostrophe", '"': "a quotation mark", "$": "a dollar sign"}
 

@@ -79,7 +79,7 @@ class Screen:
 
     @property
     def monitor_hz(self) -> int:
-        """Pixel clock for a board whose PLL makes any: the standard's, if there is one."""
+        """Pixel clock to aim at with a PLL: that of the standard, if there is one."""
         return self.standard_hz or self.pixel_hz
 
     @property

@@ -201,9 +201,9 @@ def output_directory(build: Path, engines: Collection[str], options: Mapping[str
 
 
 def tidy(directory: Path, outcomes: Sequence[Outcome]) -> None:
-    """Remove what an older run has left that would be taken for this one's: its sheet and, next to a sheet, its scenes.
+    """Remove pictures that look as if this run had made them: an older sheet and, next to a new sheet, older scenes.
 
-    A run of one scene leaves the other scenes as they are.
+    A run of one scene makes no sheet, and leaves the other scenes as they are.
     """
     (directory / SHEET).unlink(missing_ok=True)
     if len(outcomes) > 1:

@@ -4,8 +4,8 @@
 
 `timescale 1ns / 1ps
 
-// The oscillator of a PLL and its lock: tick changes twice per cycle of the oscillator, whose frequency is the input's,
-// divided by REFERENCE and multiplied by FEEDBACK * LOOP. It locks if feedback has FEEDBACK edges per REFERENCE edges of
+// The oscillator of a PLL and its lock: tick changes twice per cycle of the oscillator. The oscillator's frequency is that
+// of the input, divided by REFERENCE and multiplied by FEEDBACK * LOOP. It locks if feedback has FEEDBACK edges per REFERENCE edges of
 // the input. Limits of the phase comparison and the oscillator are in MHz.
 module pll_oscillator #(
     parameter REFERENCE = 1, FEEDBACK = 1, LOOP = 1, LEGAL = 1,

@@ -331,8 +331,6 @@ class Block(Expressions):
         self.hidden: list[Value] = []
         """Values that are no ports, so that something must read them."""
 
-    # Processes.
-
     def declare(self, value: Value, exact: bool = False) -> Value:
         """Add a signal with a range, or with a larger one."""
         width = min(value.width + (0 if exact else self.one_of(0, 0, 0, 1, 4)), WIDEST + 4)
@@ -622,8 +620,6 @@ class Block(Expressions):
         members = {name: self.made.pop(f"{group}.{name}") for name in ("left", "right")}
         self.declared.append(f"{group} = {self.a_group(members)}()")
         self.hidden += members.values()
-
-    # Blocks.
 
     def draw_parts(self, most: int) -> None:
         """Draw up to `most` parts."""

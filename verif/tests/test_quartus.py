@@ -152,5 +152,5 @@ def test_quartus_runs(without_hardware, stand_in, tmp_path, capsys):
 def test_a_pixel_clock_off_the_standard_is_said(without_hardware, stand_in, tmp_path, capsys):
     stand_in("quartus_sh", "exit 0")
     quartus.main([str(SMALL_SCENE), "--board=de2", "--output", str(tmp_path)])
-    said = "pixel clock: 25 MHz; the standard's is 25.175 MHz, and a monitor may refuse the other"
+    said = "pixel clock: 25 MHz; the standard has 25.175 MHz, and a monitor may refuse this one"
     assert said in capsys.readouterr().out.splitlines()
