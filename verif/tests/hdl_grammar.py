@@ -170,7 +170,7 @@ class Expressions:
         forms = [self.arithmetic] * 3 + [self.logic, self.shift] * 2
         forms += [self.unary, self.comparison, self.joined, self.quotient, self.call, self.bits_of_expression]
         # A choice within an expression is mostly refused.
-        forms += [self.choice] * (depth is None or self.once_in(8))
+        forms += [self.choice] * (depth is None or self.once_in(8)) + [self.quotient] * (2 * (depth is None))
         depth = self.one_of(1, 2, 1) if depth is None else depth
         if depth == 0 or self.once_in(4):
             return self.one_of(self.named, self.named, self.constant, self.part, self.word)()
@@ -240,7 +240,7 @@ class Expressions:
         return Value(f"({one.text} % {by.text})", min(divisor + 1, 0), max(divisor - 1, 0))
 
     def divisor(self, number: int) -> str:
-        power = number > 0 and number & number - 1 == 0 and self.once_in(3)
+        power = number > 0 and number & number - 1 == 0 and self.once_in(2)
         return f"(1 << {number.bit_length() - 1})" if power else f"({number})" if number < 0 else str(number)
 
     def logic(self, depth: int) -> Value:
@@ -333,7 +333,7 @@ class Block(Expressions):
 
     def declare(self, value: Value, exact: bool = False) -> Value:
         """Add a signal with a range, or with a larger one."""
-        width = min(value.width + (0 if exact else self.one_of(0, 0, 0, 1, 4)), WIDEST + 4)
+        width = min(value.width + (0 if exact else self.one_of(0, 1, 0, 4)), WIDEST + 4)
         signal = replace(full(width, value.low < 0, value.text), signal=True)
         if signal.high == 1 and not exact and not self.once_in(3):
             signal = replace(signal, bits=0)
