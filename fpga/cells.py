@@ -25,6 +25,7 @@ from raycaster.configuration import Configuration
 from raycaster.convert.take_home import TOP
 from raycaster.convert.write import write_verilog
 from raycaster.digests import code_digest, uncommented
+from raycaster.hdl.verilog_style import without_power_up
 from raycaster.options import BUILD
 from raycaster.tools import run_yosys
 
@@ -83,6 +84,7 @@ class Family:
         synthesis: Yosys command for synthesis.
         prepare: Yosys commands between reading the design and synthesis.
         count: returns the area of a module, given its cells in a JSON netlist.
+        power_up: False if Yosys's block RAM has no initial contents, so that memories that are written begin unknown.
     """
 
     name: str
@@ -91,6 +93,7 @@ class Family:
     synthesis: str
     prepare: Sequence[str]
     count: Callable[[Mapping[str, Any]], Area]
+    power_up: bool = True
 
 
 _ECP5_TABLES = {"LUT4": 1, "CCU2C": 2, "TRELLIS_DPR16X4": 4}
@@ -159,6 +162,7 @@ FAMILIES = {
                 "chtype -set hard_multiplier t:$mul",
             ),
             _count_cyclone_iv,
+            power_up=False,
         ),
         Family(
             "cyclonev",
@@ -222,6 +226,8 @@ def synthesise(config: Configuration, family: Family, directory: Path, top: str)
 def _prepare(config: Configuration, family: Family, directory: Path, top: str, *options: str) -> list[str]:
     """Replace the directory's contents by Yosys's input, and return Yosys's script."""
     sources = [path.name for path in write_verilog(config, directory) if path.suffix == ".v"]
+    for path in map(directory.joinpath, sources) if not family.power_up else ():
+        path.write_text(without_power_up(path.read_text()))
     shutil.copy(HARD_MULTIPLIER, directory)
     if top == PINS_TOP:
         sources.append(f"{top}.v")
