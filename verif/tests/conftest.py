@@ -190,6 +190,11 @@ def bench(output: Path, tmp_path_factory: pytest.TempPathFactory) -> Bench:
     return run
 
 
+def random_values(start: int) -> tuple[str, str]:
+    """Return options with which a model from Verilator starts with random registers and memories."""
+    return "+verilator+rand+reset+2", f"+verilator+seed+{start}"
+
+
 def set_day(monkeypatch: pytest.MonkeyPatch, day: int) -> None:
     """Let long runs draw their seed on a day of December 2026."""
     today = SimpleNamespace(today=lambda: datetime.date(2026, 12, day))

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import BUILD, ROOT, SMALL_SCENE, TINY, Bench, broken
+from conftest import BUILD, ROOT, SMALL_SCENE, TINY, Bench, broken, random_values
 
 from raycaster.buses import BRIDGED, OWN
 from raycaster.configuration import ConfigurationError, configure
@@ -196,11 +196,6 @@ def test_a_fault_is_noticed_in_traffic(noticed: Noticed, fault):
 def test_icarus_takes_clocks_that_rest(bench: Bench):
     """In `make test`, this is the run of the traffic bench without a fault."""
     bench(TRAFFIC_BENCH, SMALL[OWN], "icarus", seeds=(1,), defines=GATED)
-
-
-def random_values(start: int) -> tuple[str, str]:
-    """Return Verilator options that its models take at run time."""
-    return "+verilator+rand+reset+2", f"+verilator+seed+{start}"
 
 
 @pytest.mark.slow_sets(quick=["avalon-1", "axi4lite-1", "beam-1", "exact-1"])

@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from conftest import BUILD, ROOT, SMALL_SCENE, called, refusal
+from conftest import BUILD, ROOT, SMALL_SCENE, TINY, called, random_values, refusal
 from engine_vectors import check_ray_unit
 
 from raycaster.configuration import configure
@@ -37,7 +37,7 @@ from raycaster.sim.netlist import (
     synthesise,
     with_their_cells,
 )
-from raycaster.sim.simulator import SIMULATORS, SimulationError, build_program
+from raycaster.sim.simulator import SIMULATORS, SimulationError, build_program, convert
 from raycaster.tools import ToolError
 
 LIGHT = "[light]\nposition = [60, 100, 300]\n"
@@ -70,6 +70,21 @@ def test_frame(tmp_path, cells, options, light, some):
     assert all(cells_of(newest / "ray_caster_module.json")[cell] > 0 for cell in some)
     longest = max(map(len, re.findall(r"\\(\S+)", (newest / "netlist.v").read_text())))
     assert longest <= 95, "Verilator's waveforms fail with longer names"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("start", [1, 2])
+@pytest.mark.parametrize("cells", LIBRARIES)
+def test_random_start(bench, tmp_path, cells, start):
+    """The flip-flops of a netlist start with random values, which have no effect after reset."""
+    design = TINY["exact"]
+    models, placed = synthesise(convert(design, BUILD), BUILD / "test" / "netlists", family=cells).files
+    text, found = re.subn(r"initial Q = \w+;", "", models.read_text())
+    assert found
+    random_models = tmp_path / "cells.v"
+    random_models.write_text(text)
+    bench("sim.frame_bench", design, "verilator", SMALL_SCENE, verilog=[random_models, placed],
+          defines={"NETLIST": 1}, plusargs=random_values(start))  # fmt: skip
 
 
 def test_ray_unit(leaf_of, random, tmp_path):
