@@ -8,7 +8,7 @@ endif
 PYTHON3 ?= python3
 VENV := .venv
 PYTHON := $(VENV)/bin/python
-COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream tinytapeout registers report docs results commands
+COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream registers report docs results commands
 CHECKS := soak prove mutate coverage upsets dvi verify-all
 comma := ,
 # The program gets command-line variables exactly as typed: `value` and `unexport` keep make from expanding them, quotes
@@ -23,7 +23,7 @@ ARGUMENTS = $(foreach name,$(filter-out PYTHON3 PYTHON VENV,$(GIVEN)),$(call quo
 # Extras of pyproject.toml that a target needs in addition to the program itself.
 play game: EXTRAS := play
 web: EXTRAS := $(if $(filter-out 0,$(value MEASURE)),play$(comma)test,play)
-fit area tinytapeout: EXTRAS := fpga
+fit area: EXTRAS := fpga
 results: EXTRAS := fpga,docs
 bitstream: EXTRAS := fpga,play
 report: EXTRAS := fpga,report

@@ -40,7 +40,6 @@ COMMANDS: Mapping[str, Command] = {
     "fit": Command("raycaster.fpga.fit", "find the smallest hardware for a scene", "fpga"),
     "area": Command("raycaster.fpga.area", "count the cells of a design", "fpga"),
     "bitstream": Command("raycaster.fpga.bitstream", "make a bitstream for a board", "fpga"),
-    "tinytapeout": Command("raycaster.fpga.tiny_tapeout", "write a Tiny Tapeout project, and count its gates", "fpga"),
     "quartus": Command("raycaster.fpga.quartus", "write a Quartus project for an Intel board"),
     "registers": Command("raycaster.register_views", "write the register map as a C header and a page"),
     "report": Command("raycaster.report.__main__", "compare error, run time and size of designs", "report"),

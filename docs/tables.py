@@ -28,7 +28,7 @@ from raycaster.convert.provenance import ROOT, Provenance, verilog_digest
 from raycaster.digests import code_digest, tool_versions
 from raycaster.docs import beside, engine_figures, scaling
 from raycaster.errors import UserError
-from raycaster.fpga import area, bitstream, fit, tiny_tapeout
+from raycaster.fpga import area, bitstream, fit
 from raycaster.jobs import processes, run_jobs
 from raycaster.outcomes import RESULTS, Check, Digests, Outcome, Published, kept_outcome, table
 from raycaster.output import Console
@@ -94,7 +94,7 @@ def _checks(*kept: Outcome) -> str:
 
 PUBLISHED: Sequence[Published] = (
     *engine_figures.PUBLISHED, *scenes.PUBLISHED, *area.PUBLISHED, *fit.PUBLISHED, *bitstream.PUBLISHED,
-    *tiny_tapeout.PUBLISHED, *site.PUBLISHED, *scaling.PUBLISHED, *report.PUBLISHED, *beside.PUBLISHED,
+    *site.PUBLISHED, *scaling.PUBLISHED, *report.PUBLISHED, *beside.PUBLISHED,
     *mutate.PUBLISHED,
     Published("buses", ["bridges"], _buses),
     Published("checks", list(dict.fromkeys(name for check in CHECKS for name in check.kept)), _checks, dated=True),

@@ -32,13 +32,13 @@ RESET_TOLERANCE = 8
 class Viewer:
     """A monitor that watches a bench, and the pictures that it must show."""
 
-    def __init__(self, bench: HierarchyObject, *, blanking: bool = True):
+    def __init__(self, bench: HierarchyObject):
         self.bench: Any = bench
         self.job = Job.from_environment()
         self.configuration = self.job.configuration
         self.screen = self.configuration.screen_geometry
         self.model = model_of(self.configuration)
-        self.monitor = Monitor(bench, self.configuration, blanking=blanking)
+        self.monitor = Monitor(bench, self.configuration)
 
     @cached_property
     def scene(self) -> Scene:

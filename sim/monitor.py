@@ -55,16 +55,14 @@ class Line:
 class Monitor:
     """Collects lines in the background, and makes frames of them."""
 
-    def __init__(self, bench: HierarchyObject, configuration: Configuration, *, blanking: bool = True):
+    def __init__(self, bench: HierarchyObject, configuration: Configuration):
         """Watch a bench's line sink.
 
         Args:
             bench: a bench with a `sink`.
             configuration: the design in it.
-            blanking: True if the pins signal blanking; see `decode_frame`.
         """
         self._sink: Any = bench.sink
-        self._blanking = blanking
         self._screen = configuration.screen_geometry
         self._colour_bits = configuration.colour_bits
         self._patience_ns = 3 * self._screen.line_cycles * CLOCK_NS
@@ -133,7 +131,7 @@ class Monitor:
             if on_row is not None and 0 < visible <= vertical.visible:
                 on_row(visible)
         self.frame_lines = lines
-        return decode_frame(lines, self._screen, self._colour_bits, blanking=self._blanking)
+        return decode_frame(lines, self._screen, self._colour_bits)
 
     async def _first_line(self) -> Line:
         """Return the first line in which VS is active after a line in which it was inactive."""
@@ -162,14 +160,13 @@ class Monitor:
             raise VideoError(f"vga_clk did not change at {faults} clocks; it must be clk halved, or inverted")
 
 
-def decode_frame(lines: Sequence[Line], screen: Screen, colour_bits: int, *, blanking: bool = True) -> np.ndarray:
+def decode_frame(lines: Sequence[Line], screen: Screen, colour_bits: int) -> np.ndarray:
     """Check every sample of a frame against the standard and return its visible part.
 
     Args:
         lines: one frame from VS's leading edge on, `screen.vertical.total` lines.
         screen: the standard.
         colour_bits: bits per channel.
-        blanking: True if BLANK_N is high in the picture; False if it is always low.
 
     Returns:
         Visible lines x visible pixels x 3, uint8; a channel of fewer than 8 bits is in the top bits, the others are 0.
@@ -179,13 +176,13 @@ def decode_frame(lines: Sequence[Line], screen: Screen, colour_bits: int, *, bla
             what was expected, and has a picture.
     """
     try:
-        return _decode(lines, screen, colour_bits, blanking)
+        return _decode(lines, screen, colour_bits)
     except VideoError as error:
-        error.picture = raster(lines, screen, colour_bits, blanking=blanking)
+        error.picture = raster(lines, screen, colour_bits)
         raise
 
 
-def raster(lines: Sequence[Line], screen: Screen, colour_bits: int, *, blanking: bool = True) -> np.ndarray:
+def raster(lines: Sequence[Line], screen: Screen, colour_bits: int) -> np.ndarray:
     """Draw a frame with its blanking, for people to look at: each wrong sample is pink, a sync's pulse dark blue.
 
     Args: as in `decode_frame`.
@@ -196,7 +193,7 @@ def raster(lines: Sequence[Line], screen: Screen, colour_bits: int, *, blanking:
     bits = _samples(lines, screen, colour_bits)
     controls, in_picture = bits[..., :_CONTROL_BITS], _in_picture(screen)
     wrong = (bits > 1).any(axis=-1) | (bits[..., _CONTROL_BITS:].any(axis=-1) & ~in_picture)
-    for number, (_, expected, _) in enumerate(_standard(screen, blanking)):
+    for number, (_, expected, _) in enumerate(_standard(screen)):
         wrong |= controls[..., number] != expected
     pulse = np.zeros_like(wrong)
     for number, span in enumerate((screen.horizontal, screen.vertical)):
@@ -207,7 +204,7 @@ def raster(lines: Sequence[Line], screen: Screen, colour_bits: int, *, blanking:
     return picture
 
 
-def _decode(lines: Sequence[Line], screen: Screen, colour_bits: int, blanking: bool) -> np.ndarray:
+def _decode(lines: Sequence[Line], screen: Screen, colour_bits: int) -> np.ndarray:
     horizontal, vertical = screen.horizontal, screen.vertical
     for number, line in enumerate(lines):
         if line.samples != horizontal.total:
@@ -220,7 +217,7 @@ def _decode(lines: Sequence[Line], screen: Screen, colour_bits: int, blanking: b
         line, sample = np.argwhere(unknown)[0]
         raise VideoError(f"line {line}, sample {sample}: an output is neither 0 nor 1, in {unknown.sum()} samples")
     in_picture = _in_picture(screen)
-    for number, (what, expected, rule) in enumerate(_standard(screen, blanking)):
+    for number, (what, expected, rule) in enumerate(_standard(screen)):
         _check(what, bits[..., number], expected, rule)
     colours = _colours(bits, colour_bits)
     _check("any colour in blanking", colours.any(axis=-1) & ~in_picture, np.False_, "0")
@@ -240,7 +237,7 @@ def _samples(lines: Sequence[Line], screen: Screen, colour_bits: int) -> np.ndar
     return (characters ^ ord("0")).reshape(len(lines), total, sample_bits)[:, ::-1]
 
 
-def _standard(screen: Screen, blanking: bool) -> list[tuple[str, np.ndarray | np.bool, str]]:
+def _standard(screen: Screen) -> list[tuple[str, np.ndarray | np.bool, str]]:
     """List the controls of a sample: their names, values, bool (lines, samples) or broadcast, and rules in words."""
     horizontal, vertical = screen.horizontal, screen.vertical
     column, row = np.arange(horizontal.total), np.arange(vertical.total)[:, None]
@@ -249,7 +246,7 @@ def _standard(screen: Screen, blanking: bool) -> list[tuple[str, np.ndarray | np
     return [
         ("HS", (column < horizontal.sync) == horizontal.active_high, hs),
         ("VS", (row < vertical.sync) == vertical.active_high, vs),
-        ("BLANK_N", _in_picture(screen) & blanking, "1 in the picture only" if blanking else "0"),
+        ("BLANK_N", _in_picture(screen), "1 in the picture only"),
         ("SYNC_N", np.False_, "0"),
     ]
 

@@ -129,11 +129,6 @@ LATE = {
     "bitstream": DVI,
     "verify dvi": DVI,
     "verify soak": [("--build file", "file")],
-    "tinytapeout boxes": [
-        ("--rows 240", "rows: a Tiny Tapeout project shows one pixel per clock; choose --rows 120, 96 or 60, or "),
-        ("--colour-bits 3", "colour_bits: the Pmod has 2 pins per colour, not 3"),
-        ("--bus apb", "bus: the top drives the registers itself, by Avalon-MM; leave out apb"),
-    ],
     "fit boxes": [("--error 0.0001 --engine seed --fraction-bits 0", "no design shows ")],
 }
 """Mistakes that show once the command has announced its work."""
