@@ -14,7 +14,6 @@ from pathlib import Path
 
 from raycaster.buses import OWN
 from raycaster.configuration import OPTIONS, Configuration
-from raycaster.convert import ip_xact
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM, component
 from raycaster.hdl.hierarchy import Module, prefixed
 from raycaster.register_views import HEADER, write_header
@@ -50,8 +49,6 @@ def write_take_home(config: Configuration, prefix: str, modules: Sequence[Module
     if config.bus == "avalon":
         (directory / COMPONENT).write_text(component(config, modules[-1].ports, sources))
         (directory / NIOS_SYSTEM.name).write_text(NIOS_SYSTEM.read_text().replace(TOP, top))
-    elif config.bus in ip_xact.BUS_TYPES:
-        (directory / ip_xact.IP_XACT).write_text(ip_xact.component(config, modules[-1].ports, sources))
     write_header(config.table, directory / HEADER)
     (directory / f"{top}.vlt").write_text(waivers(sources, prefix))
     (directory / BENCHES).mkdir()

@@ -1,90 +1,29 @@
 # SPDX-License-Identifier: MIT
-"""Descriptions of the design for other tools and for software, most of them read by third-party readers.
+"""Descriptions of the design for other tools and for software.
 
 `test_take_home.py` checks the ports; `test_driver.py` compiles the driver with the header.
 """
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
 from conftest import ROOT
-from ipyxact.ipyxact import Component
-from peakrdl_ipxact import IPXACTImporter
-from systemrdl import RDLCompiler
 from systemrdl.node import RegNode
 from tcl import compare_calls, tcl_calls
 
 from raycaster.configuration import MOST_RECTANGLES, Configuration, configure
-from raycaster.convert.ip_xact import IP_XACT
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM, component, interfaces
 from raycaster.convert.take_home import TOP
 from raycaster.convert.write import write_verilog
 from raycaster.hdl.hierarchy import Port
 from raycaster.register_views import HEADER, SOFTWARE, write_header
-from raycaster.registers import address_bits, compile_registers, register_map
-
-BUS_PORTS = {
-    "axi4lite": "AWADDR AWVALID AWREADY WDATA WSTRB WVALID WREADY BRESP BVALID BREADY "
-    "ARADDR ARVALID ARREADY RDATA RRESP RVALID RREADY",
-    "apb": "PADDR PSEL PENABLE PWRITE PREADY PSLVERR PWDATA PSTRB PRDATA",
-}
-"""Ports by bus, from the specifications, without protection types."""
+from raycaster.registers import address_bits, compile_registers
 
 
 def small(**options: object) -> Configuration:
     return configure(screen="tiny", units=2, rectangles=2, allow_underrun=True, **options)
-
-
-@pytest.fixture(params=BUS_PORTS, scope="module")
-def written(request, tmp_path_factory) -> tuple[str, Path]:
-    """Write a design with a bus that IP-XACT knows; return the bus and the component."""
-    directory = tmp_path_factory.mktemp("ip_xact") / "verilog"
-    write_verilog(small(bus=request.param), directory)
-    return request.param, directory / IP_XACT
-
-
-def test_registers_of_ip_xact(written):
-    """The component has every offset, and the bits and access of each field; the C header has the table's length."""
-    bus, path = written
-    compiler = RDLCompiler()
-    IPXACTImporter(compiler).import_file(str(path))
-    found = {}
-    for node in compiler.elaborate().descendants():
-        if isinstance(node, RegNode):
-            fields = {field.inst_name: (field.low, field.width) for field in node.fields()}
-            found[node.inst_name] = node.address_offset, fields
-    table = small(bus=bus).table
-    assert found == {
-        re.sub(r"\[(\d+)\]\.", r"_\1_", name): (
-            4 * register.address,
-            {field: (place.lsb, place.width) for field, place in register.fields.items()},
-        )
-        for name, register in register_map(table).items()
-    }
-    text = path.read_text()
-    assert f"<spirit:range>{4 << address_bits(table):#x}</spirit:range>" in text
-    pending = text[text.index("<spirit:name>irq_pending<") :]
-    assert "<spirit:modifiedWriteValue>oneToClear<" in pending[: pending.index("</spirit:register>")]
-    assert f"rectangle[{table}];" in (path.parent / HEADER).read_text()
-
-
-def test_interfaces_of_ip_xact(written):
-    """Each port except the video belongs to one interface."""
-    bus, path = written
-    component = Component()
-    component.load(str(path))
-    mapped = {
-        interface.name: {one.logicalPort.name: one.physicalPort.name for one in interface.portMaps.portMap}
-        for interface in component.busInterfaces.busInterface
-    }
-    name = {"axi4lite": "S_AXI", "apb": "S_APB"}[bus]
-    assert set(mapped) == {name, "clk", "reset", "irq"}
-    assert mapped[name] == {one: f"{name}_{one}".lower() for one in BUS_PORTS[bus].split()}
-    owned = [physical for one in mapped.values() for physical in one.values()]
-    assert sorted(owned) == sorted(port.name for port in component.model.ports.port if not port.name.startswith("vga_"))
 
 
 def test_the_component_of_platform_designer(tmp_path):
