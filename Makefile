@@ -53,7 +53,6 @@ lint test: $(VENV)/base
 	@$(if $(filter lint,$@),$(PYTHON) -m ruff check)
 	@$(if $(filter lint,$@),$(PYTHON) -m ruff format --check)
 	@$(if $(filter lint,$@),$(PYTHON) -m pyright)
-	@$(if $(filter lint,$@),$(PYTHON) -m raycaster.verif.text_lint)
 	@$(if $(filter test,$@),$(PYTHON) -m raycaster.sim.ensure_tools icarus chromium tcl)
 	@$(if $(filter test,$@),$(PYTHON) -m pytest -q -n 2 --dist worksteal -m 'not slow' --durations=10 verif/tests)
 

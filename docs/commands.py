@@ -17,7 +17,6 @@ from raycaster.tools import find_program
 
 LEFT_OUT = {
     "make test": "it checks the commands itself",
-    ".venv/bin/pre-commit install": "it would change this clone",
     ".venv/bin/python -m pytest -q verif/tests/leaves/engine/test_colour_dimmer.py": (
         "the test is only on the page, not in the clone"
     ),

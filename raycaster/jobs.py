@@ -23,7 +23,7 @@ from raycaster.errors import UserError, not_installed
 from raycaster.output import Console
 
 ATTEMPTS = 3
-"""Number of attempts at a job whose worker dies."""
+"""Number of attempts at a job whose worker in a Dask cluster dies."""
 
 J = TypeVar("J")
 R = TypeVar("R")
@@ -75,7 +75,7 @@ class Kept:
         """Return whether a job's result is kept, and the result."""
         try:
             return (False, None) if self.fresh else (True, pickle.loads(self.place(job).read_bytes()))
-        except (FileNotFoundError, EOFError, pickle.UnpicklingError):
+        except FileNotFoundError:
             return False, None
 
     def store(self, job: object, result: object) -> None:
@@ -132,8 +132,6 @@ def run_jobs(
     console: Console,
     *,
     finished: Callable[[J, R], object] = lambda job, result: None,
-    before: int = 0,
-    label: Callable[[J], str] = str,
     kept: Kept | None = None,
 ) -> list[R]:
     """Run a function on every job, and return the results in the order of the jobs.
@@ -145,46 +143,36 @@ def run_jobs(
         make_executor: function that `executors` yields, or that `processes` or `threads` returns.
         console: console for the progress bar.
         finished: called locally with each job and its result as soon as it arrives.
-        before: number of jobs done earlier, which the bar counts too.
-        label: returns a job's name for the message about workers that died.
         kept: results of earlier runs, to which new ones are added.
 
     Raises:
-        UserError: workers died on the same jobs `ATTEMPTS` times.
+        UserError: a local worker died.
     """
-    results: dict[int, R] = {}
-    if kept:
-        for place, job in enumerate(jobs):
-            there, result = kept.find(job)
-            if there:
-                results[place] = result
+    found = [kept.find(job) if kept else (False, None) for job in jobs]
+    results: dict[int, R] = {place: result for place, (there, result) in enumerate(found) if there}
     if results:
         console.print(f"already there: {len(results)} of {len(jobs)} {what}")
+    missing = [place for place in range(len(jobs)) if place not in results]
     columns = TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn()
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("", total=before + len(jobs), completed=before + len(results))
-        for _ in range(ATTEMPTS):
-            missing = [place for place in range(len(jobs)) if place not in results]
-            if not missing:
-                break
-            with make_executor() as pool:
-                futures = {pool.submit(function, jobs[place]): place for place in missing}
-                try:
-                    for future in as_completed(futures):
-                        place = futures[future]
-                        try:
-                            results[place] = future.result()
-                        except BrokenExecutor:
-                            continue  # a worker died, and took the others' work with it: try again
-                        if kept:
-                            kept.store(jobs[place], results[place])
-                        finished(jobs[place], results[place])
-                        progress.advance(task)
-                except BaseException:
-                    # Jobs that have not started must not delay the error or the prompt.
-                    for future in futures:
-                        future.cancel()
-                    raise
-    if missing := [job for place, job in enumerate(jobs) if place not in results]:
-        raise UserError(f"workers died {ATTEMPTS} times on {len(missing)} jobs, {label(missing[0])} among them")
+    with (
+        Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress,
+        make_executor() as pool,
+    ):
+        task = progress.add_task("", total=len(jobs), completed=len(results))
+        futures = {}
+        try:
+            futures = {pool.submit(function, jobs[place]): place for place in missing}
+            for future in as_completed(futures):
+                place = futures[future]
+                results[place] = future.result()
+                if kept:
+                    kept.store(jobs[place], results[place])
+                finished(jobs[place], results[place])
+                progress.advance(task)
+        except BrokenExecutor:
+            raise UserError(f"{what}: a worker was killed, maybe for lack of memory; use fewer jobs") from None
+        finally:
+            # Jobs that have not started must not delay an error or the prompt.
+            for future in futures:
+                future.cancel()
     return [results[place] for place in range(len(jobs))]

@@ -14,7 +14,6 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import asdict, dataclass, field
 from functools import cache, lru_cache
-from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -424,11 +423,10 @@ class Sweep:
             points: points to compute; each new result is kept as soon as it is computed.
 
         Raises:
-            UserError: workers died repeatedly on the same points.
+            UserError: a worker was killed.
         """
         points = list(dict.fromkeys(points))
-        label = attrgetter("arguments")
-        found = run_jobs(what, timed, points, self.make_executor, self.console, label=label, kept=Kept(self.place))
+        found = run_jobs(what, timed, points, self.make_executor, self.console, kept=Kept(self.place))
         self._seconds.update((point, seconds) for point, (_, seconds) in zip(points, found, strict=True))
         return {point: result for point, (result, _) in zip(points, found, strict=True)}
 

@@ -163,7 +163,7 @@ def write_site(
     """
     firmware = build_firmware((build / "firmware").absolute()).words.read_text()
     make, pool = partial(_build, build=build), processes(2)
-    built = run_jobs("models", make, models, pool, console, label=lambda model: model.name)
+    built = run_jobs("models", make, models, pool, console)
     with replaced(output) as site:
         (site / "models").mkdir()
         contents = {model.name: of for model, of in zip(models, built, strict=True)}

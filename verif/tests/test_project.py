@@ -1,28 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""Project metadata: the version agrees in three places, dependencies point one way, and hooks work."""
+"""Project metadata: the version agrees in three places, and dependencies point one way."""
 
 from __future__ import annotations
 
 import ast
 import importlib.metadata
-import os
 import re
 import shutil
 import subprocess
 import sys
-import sysconfig
 import tomllib
 import zipfile
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, run_tool
+from conftest import ROOT
 
 from raycaster.engines import ENGINES
 from raycaster.registers import register_map
-from raycaster.verif.text_lint import findings
-
-HOOKS = ".pre-commit-config.yaml"
 
 MAY_IMPORT = {
     "hdl": (),
@@ -149,48 +144,3 @@ def test_the_wheel_has_every_file(tmp_path: Path):
     with zipfile.ZipFile(wheel) as archive:
         names = {name for name in archive.namelist() if ".dist-info/" not in name}
     assert names == {name if name.startswith("raycaster/") else f"raycaster/{name}" for name in wanted}
-
-
-def test_hooks(tmp_path: Path):
-    """The hooks work offline in a repository with one good file and a bad one for each hook."""
-    for name in (HOOKS, "pyproject.toml"):
-        shutil.copy(ROOT / name, tmp_path)
-    (tmp_path / ".venv").symlink_to(Path(sysconfig.get_path("scripts")).parent, target_is_directory=True)
-    files = {
-        "good.py": '"""Good."""\n',
-        "ruff_check.py": "import os\n",
-        "ruff_format.py": '"""Bad."""\nX  =  1\n',
-        "end.md": "no newline",
-        "spaces.md": "spaces  \n",
-        "lines.md": "carriage\r\nreturn\n",
-        "broken.toml": "a = \n",
-    }
-    for name, text in files.items():
-        (tmp_path / name).write_bytes(text.encode())
-    for command in (["init", "-q"], ["add", "--", *files, HOOKS, "pyproject.toml"]):
-        subprocess.run(["git", *command], cwd=tmp_path, check=True)
-    # A separate cache, and none of the user's git settings.
-    variables = dict.fromkeys(("GIT_CONFIG_GLOBAL", "GIT_CONFIG_SYSTEM"), os.devnull)
-    command = [sys.executable, "-m", "pre_commit", "run", "--all-files"]
-    said = run_tool(tmp_path, *command, PRE_COMMIT_HOME=str(tmp_path / "cache"), **variables).stdout
-    for name in files:
-        assert (name in said) == (name != "good.py"), said
-    assert (tmp_path / "end.md").read_text() == "no newline\n"
-    assert (tmp_path / "lines.md").read_bytes() == b"carriage\nreturn\n"
-    assert re.search(r"no marks of a merge\.+Passed", said)
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        '"""Of~a camera that turns."""', "x = 1  # Where~it is known", '""' + '"What a ray hits."""',
-        "two pixels~a~clock", "a file per scene, a cycle~a~row", "cycles fore" + "told",
-        "nothing but~for one", "this in~the~place~of that",
-        "a clock of~one's~own", "each pixel is held~against it", "the design at~hand",
-    ],
-)  # fmt: skip
-def test_odd_phrases_are_found(text):
-    """The tildes, spaces in the checked text, keep this file plain; other lines are left alone."""
-    plain = "Of course, two pixels per clock.\n# Return where it is. What for?\nthe scene's own"
-    found = findings(f"{plain}\n{text.replace('~', ' ')}")
-    assert [(number, bool(remedy)) for number, _, remedy in found] == [(4, True)]
