@@ -11,7 +11,8 @@ module dvi_board (
     output wire [3:0] link_n
 );
 
-wire clk, shift_clk;
+// Kept, so that nextpnr reports the clocks by these names.
+(* keep *) wire clk, shift_clk;
 wire [7:0] vga_r, vga_g, vga_b;
 wire vga_hs, vga_vs, vga_blank_n, vga_clk;
 wire [9:0] blue, green, red;

@@ -19,7 +19,8 @@ module parallel_board #(
     output wire vga_clk
 );
 
-wire clk;
+// Kept, so that nextpnr reports the clock by this name.
+(* keep *) wire clk;
 
 board_clocks clocks (
     .clk_in(clk_in),
