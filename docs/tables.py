@@ -76,7 +76,7 @@ def _buses(kept: Outcome) -> str:
 
 
 CHECKS: Sequence[Check] = (
-    *scenes.CHECKS, *soak.CHECKS, *game.CHECKS, *report.CHECKS, *prove.CHECKS, *mutate.CHECKS,
+    *scenes.CHECKS, *soak.CHECKS, *game.CHECKS, *prove.CHECKS, *mutate.CHECKS,
     *upsets.CHECKS, *coverage.CHECKS, *everything.CHECKS,
 )  # fmt: skip
 """Rows of the table of long-running checks."""

@@ -153,6 +153,8 @@ def run_jobs(
     if results:
         console.print(f"already there: {len(results)} of {len(jobs)} {what}")
     missing = [place for place in range(len(jobs)) if place not in results]
+    if not missing:
+        return [results[place] for place in range(len(jobs))]
     columns = TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn()
     with (
         Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress,

@@ -17,7 +17,7 @@ from raycaster.errors import UserError
 from raycaster.fpga.cells import DECIDES, TOOLS
 from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
-from raycaster.outcomes import RESULTS, Check, Outcome, Published, add_keep_option, keep, kept_outcome, table
+from raycaster.outcomes import RESULTS, Outcome, Published, add_keep_option, keep, kept_outcome, table
 from raycaster.output import Console
 from raycaster.report.arithmetics import arithmetic_chapter
 from raycaster.report.designs import best_of, design_chapter, find_designs, of_kept, to_keep
@@ -60,19 +60,18 @@ def write_report(directory: Path, what: Extent, sweep: Sweep, command_line: str)
         raise UserError(f"{SCENES}: contains no scene files; run this in the project directory")
     pictures = find_pictures(what, scenes, sweep)
     designs = find_designs(what.designs, pictures.all_shares, sweep)
-    stability, of_cases = stability_chapter(what, sweep)
     page = sum(
         (
             design_chapter(designs, pictures.all_shares),
             error_chapter(pictures),
-            stability,
+            stability_chapter(what, sweep),
             arithmetic_chapter(what, scenes, sweep),
             omission_chapter(what, scenes, sweep),
             Chapter([_method(what, sweep, command_line)]),
         ),
         Chapter(),
     )
-    return write(page, directory), {"designs": to_keep(designs), "alarms": len(page.alarms), **of_cases}
+    return write(page, directory), {"designs": to_keep(designs), "alarms": len(page.alarms)}
 
 
 def _method(what: Extent, sweep: Sweep, command_line: str) -> Section:
@@ -131,14 +130,7 @@ def _error_and_time(kept: Outcome) -> str:
     return table(["design", "LUT4", "ns per pixel", "ms per frame", "mean share of wrong pixels"], rows)
 
 
-def _stiff(kept: Outcome) -> str:
-    return "{stiff_cases} cases, {unlike_golden} points unlike the model, {over_bound} over their bound".format_map(
-        kept.figures
-    )
-
-
 PUBLISHED = (Published("error_and_time", ["report"], _error_and_time),)
-CHECKS = (Check("hit points of every ray in the stiff cases", "seed, no culling", ["report"], _stiff),)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from raycaster.configuration import LOOKS, Configuration, configure
+from raycaster.configuration import LOOKS, Configuration
 from raycaster.golden.catalogue import Case, catalogue
 from raycaster.report.designs import exact_designs, seed_designs
 
@@ -28,10 +28,6 @@ class Extent:
     cases: Sequence[Case]
     case_fractions: Sequence[int]
     case_screen: str
-    probed_cases: Sequence[Case]
-    probed: Sequence[Configuration]
-    """Designs whose hit points are checked in simulation."""
-
     left: Sequence[str]
     """Names of the packaged scenes for which a design is reduced step by step."""
 
@@ -39,21 +35,15 @@ class Extent:
 def extent(quick: bool) -> Extent:
     """Return the full extent, or a quick one of two minutes."""
     cases = catalogue(LOOKS)
-    plain = [case for case in cases if not case.scene.lacks(())]
     if quick:
-        probed = configure(screen="tiny", units=16, reflections=CASE_REFLECTIONS, divider_bits=3, allow_underrun=True)
         return Extent(
             fractions=(0, 2, 4), worlds=24,
             designs=[*seed_designs((), (16,), "tiny")[1:2], *exact_designs((4,), "tiny")], cases=cases,
-            case_fractions=(0,), case_screen="tiny", probed_cases=plain[::12], probed=[probed], left=(),
+            case_fractions=(0,), case_screen="tiny", left=(),
         )  # fmt: skip
-    probed = [
-        configure(reflections=CASE_REFLECTIONS, fraction_bits=f, rounding=r, divider_bits=3)
-        for f, r in ((0, "truncate"), (4, "nearest"))
-    ]
     return Extent(
         fractions=range(9), worlds=200,
         designs=[*seed_designs((0, 4, 8), (20, 32)), *exact_designs((4, 5, 8, 10, 16))], cases=cases,
-        case_fractions=(0, 4), case_screen="vga", probed_cases=plain, probed=probed,
+        case_fractions=(0, 4), case_screen="vga",
         left=("corners", "facing_mirrors", "pool", "evening", "shadow_hall"),
     )  # fmt: skip

@@ -31,7 +31,6 @@ from raycaster.fixed import FixedScene
 from raycaster.fpga.area import with_units
 from raycaster.fpga.cells import FAMILIES, measure
 from raycaster.golden.catalogue import catalogue
-from raycaster.golden.engines import model_of
 from raycaster.golden.errors import depth_errors
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.measures import ARITHMETICS, ROUNDING_MODELS, measures, relative_conditions
@@ -49,7 +48,6 @@ from raycaster.scene import Scene, dump_scene, load_scene
 from raycaster.screens import SCREENS
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import build_model, run_bench, system_verilator
-from raycaster.verif.hit_points import build_probed_model, hit_points
 from raycaster.verif.random_scenes import random_scene
 
 CASE, SEED = "case:", "seed:"
@@ -353,20 +351,6 @@ def _time(point: Point) -> dict[str, Any]:
     }
 
 
-def _hits(point: Point) -> dict[str, Any]:
-    """Compute errors of hit points in the converted Verilog by depth, and the number unlike the golden model."""
-    config, scene = point.config, point.scene
-    slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
-    perfect, golden = (_traced(model, scene, slopes, config.reflections) for model in (ExactModel(), model_of(config)))
-    with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
-        points = hit_points(build_probed_model(config), scene, config.reflections, Path(scratch))
-    different = 0
-    for winner, expected, seen in zip(golden.winners, golden.points, points, strict=True):
-        different += int((np.where(winner[:, None] >= 0, expected, -1) != seen).any(axis=1).sum())
-    # The hardware does not store which rectangle it hit; where its points match the model, so do rectangles.
-    return {"different": different, "depths": _depths(scene, slopes, perfect, golden, points, config)}
-
-
 @dataclass(frozen=True)
 class Kind:
     """A kind of point.
@@ -393,7 +377,6 @@ KINDS = {
     "cells": Kind(_cells, _CELLS, of_scene=False),
     "left": Kind(_left, (*_CELLS, "golden", "fit")),
     "time": Kind(_time, _SIMULATIONS),
-    "hits": Kind(_hits, (*_SIMULATIONS, "verif/hit_points.py", "debug/probes")),
 }
 
 

@@ -32,8 +32,8 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def stability_chapter(what: Extent, sweep: Sweep) -> tuple[Chapter, dict[str, int]]:
-    """Return the chapter and the figures to keep."""
+def stability_chapter(what: Extent, sweep: Sweep) -> Chapter:
+    """Return the chapter."""
     found = sweep(
         "catalogue",
         [
@@ -44,14 +44,7 @@ def stability_chapter(what: Extent, sweep: Sweep) -> tuple[Chapter, dict[str, in
     )  # fmt: skip
     pictures = {point: {**result, **_extremes(result["depths"])} for point, result in found.items()}
     conditions = {name_of(one.what): of["condition"] for one, of in sweep("measures", case_measures(what)).items()}
-    probed = [Point("hits", f"{CASE}{case.name}", config) for config in what.probed for case in what.probed_cases]
-    hits = {one: {**of, **_extremes(of["depths"])} for one, of in sweep("hit points", probed).items()}
-    columns = "case", "design", "hit points unlike the model", "worst error", "bound", "over the bound", "command"
-    seen = [
-        [name_of(one.what), one.config.name, *(of[n] for n in ("different", "worst", "bound", "exceeded")), one.command]
-        for one, of in hits.items()
-    ]
-    said, alarms, summary = _judged(pictures, hits, conditions)
+    said, alarms, summary = _judged(pictures, conditions)
     strains, rows = {case.name: case.strain for case in what.cases}, []
     for point, one in pictures.items():
         counts = [one[key] for key in ("wrong", "flips", "worst", "bound", "tightest")]
@@ -65,15 +58,12 @@ def stability_chapter(what: Extent, sweep: Sweep) -> tuple[Chapter, dict[str, in
         "cameras, and patterns hit on the borders of their cells. The relative condition number of a hit is the "
         "relative change of the hit point per relative change of the slope, for small changes: one over the cosine of "
         "the angle of incidence, in mirrors too; the condition of a case is the maximum over all hits. Only the seed "
-        "engine rounds, and its camera cannot turn. Hit points were read from the simulated ray units of "
-        f"{len(what.probed)} designs, with {len(what.probed_cases)} cases: hit_points.csv."
+        "engine rounds, and its camera cannot turn."
     )
     drawn = [_stiffness(pictures, conditions, first), _flips(pictures)]
     table = Table(Data("catalogue", (*COLUMNS, "strains", "command"), rows), COLUMNS, of_page)
-    section = Section("Stiff and extreme cases", text, said, drawn, [table], [Data("hit_points", columns, seen)])
-    different, over = (sum(one[name] for one in hits.values()) for name in ("different", "exceeded"))
-    kept = {"stiff_cases": len(what.probed_cases), "unlike_golden": different, "over_bound": over}
-    return Chapter([section], alarms, [summary]), kept
+    section = Section("Stiff and extreme cases", text, said, drawn, [table])
+    return Chapter([section], alarms, [summary])
 
 
 def _extremes(depths: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
@@ -82,9 +72,7 @@ def _extremes(depths: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return extremes | {name: sum(depth[name] for depth in depths) for name in ("flips", "exceeded")}
 
 
-def _judged(
-    pictures: Results, hits: Results, conditions: Mapping[str, float | None]
-) -> tuple[list[str], list[str], str]:
+def _judged(pictures: Results, conditions: Mapping[str, float | None]) -> tuple[list[str], list[str], str]:
     """Return the sentences, the alarms and the summary."""
 
     def words(point: Point) -> str:
@@ -93,22 +81,15 @@ def _judged(
     over = [point for point, result in pictures.items() if result["exceeded"]]
     tightest, most = (max(pictures, key=lambda point: pictures[point][key]) for key in ("tightest", "wrong"))
     part = pictures[tightest]["tightest"]
-    different, over_seen = (sum(one[name] for one in hits.values()) for name in ("different", "exceeded"))
     soaks = [kept_outcome(RESULTS / name) for name in STIFF_CHECKS]
     stiffest = max(conditions, key=lambda name: conditions[name] or 0)
     alarms = [f"A bound is exceeded: {words(one)}. {one.command}" for one in over]
-    hardware = (
-        f"In simulation, {different} hit points of {len(hits)} frames differ from the golden model, and {over_seen} "
-        "coordinates exceed their bound."
-    )
-    alarms += [hardware] if different or over_seen else []
     said = [
         f"The stiffest of {len(conditions)} cases is {stiffest}: a hit moves by up to {conditions[stiffest]:,.0f} "
         "times the relative error of its ray.",
         f"{len(over)} of the seed engine's {len(pictures)} pictures, for {len({one.what for one in pictures})} cases, "
         f"have a coordinate over its bound. The closest to its bound ({words(tightest)}) has {part:.2%} of it. The "
         f"most wrong pixels ({words(most)}) are {pictures[most]['wrong']:,} of {pictures[most]['pixels']:,}.",
-        hardware,
         *(
             f"The {of.scope['engine']} engine drew the {of.figures['scenes']} cases that it can show in simulation, "
             f"with {of.figures['wrong_vs_exact']} of {of.figures['pixels']:,} pixels unlike exact arithmetic "

@@ -6,20 +6,16 @@ from __future__ import annotations
 from fractions import Fraction
 from itertools import product
 
-import numpy as np
 import pytest
 
-from raycaster.configuration import configure
 from raycaster.golden.catalogue import catalogue
 from raycaster.golden.errors import compare
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.random_world import random_camera, random_rectangles, random_slopes
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import SeedModel
-from raycaster.golden.world import Rectangles
 from raycaster.report import errors as report_errors
-from raycaster.report import points
-from raycaster.report.points import CASE, Point, picture
+from raycaster.report.points import CASE, picture
 from raycaster.screens import SCREENS
 
 SLOPES = primary_slopes(SCREENS["tiny", 48]).reshape(-1, 3)
@@ -85,22 +81,6 @@ def test_the_known_case():
     result = picture("case:camera_beside_edge_of_world", 0, "truncate", 2).compute()
     assert (result["wrong"], result["pixels"]) == (23_760, 76_800)
     assert result["depths"][0]["flips"] == 23_760
-
-
-@pytest.mark.parametrize(("off", "different", "exceeded"), [(0, 0, [0, 0, 0]), (200, 1, [0, 3, 0])])
-def test_a_hit_point_of_the_hardware_that_is_off_is_noticed(monkeypatch, off, different, exceeded):
-    def hits(_, scene, reflections, directory):
-        camera, background = scene.camera.position, scene.background
-        traced = SeedModel().trace(Rectangles.of_scene(scene), camera, background, SLOPES, reflections)
-        seen = [np.where(w[:, None] >= 0, p, -1) for w, p in zip(traced.winners, traced.points, strict=True)]
-        seen[1][np.flatnonzero(traced.winners[1] >= 0)[0]] += off
-        return tuple(seen)
-
-    monkeypatch.setattr(points, "build_probed_model", lambda config: None)
-    monkeypatch.setattr(points, "hit_points", hits)
-    config = configure(screen="tiny", units=16, reflections=2, divider_bits=3)
-    result = Point("hits", "case:facing_y_40", config).compute()
-    assert (result["different"], [depth["exceeded"] for depth in result["depths"]]) == (different, exceeded)
 
 
 def test_the_mean_error_is_over_rays():
