@@ -33,7 +33,7 @@ LIBRARIES: Mapping[str, tuple[str, ...]] = {
 multipliers and block RAM."""
 
 _LONGEST_NAME = 95
-"""Longest signal name that is kept; with longer ones Verilator fails to write waveforms."""
+"""Longest name of a wire or a cell that is kept; with longer ones Verilator fails to write waveforms."""
 
 _CELLS, _NETLIST = "cells.v", "netlist.v"
 
@@ -141,7 +141,7 @@ def as_verilog(placed: Path, family: str, elsewhere: Collection[str] = ()) -> li
             # Black boxes that stay lack parameters without a default value; then the simulator checks the names.
             f"hierarchy {'' if elsewhere else '-check '}-top {placed.stem}",
             "delete t:$scopeinfo",
-            f"rename -hide w:{_LONGEST_NAME * '?'}?*",
+            *(f"rename -hide {kind}:{_LONGEST_NAME * '?'}?*" for kind in "wc"),
             "check -assert",
             f"write_verilog -noattr -noexpr {_NETLIST}",
         ],

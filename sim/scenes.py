@@ -22,7 +22,7 @@ from rich.text import Text
 from raycaster.configuration import Configuration
 from raycaster.convert.provenance import Provenance
 from raycaster.design import Design, left_out, packaged_for
-from raycaster.engines import SEED
+from raycaster.engines import ENGINES, SEED
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.netlist import DECIDES
@@ -57,7 +57,8 @@ from raycaster.sim.simulator import (
 from raycaster.waits import building
 
 GATES_OPTIONS: Mapping[str, Any] = {"screen": "tiny", "units": 16, "reflections": 2}
-"""A netlist's default options: the fewest units with which one design shows all packaged scenes in time."""
+"""A netlist's default options: the fewest units, if a row is buffered, with which one design shows all packaged scenes
+in time."""
 
 PICTURED = ("reflections", "rectangles", "fraction_bits", "rounding", "colour_bits", "allow_underrun", "fix", "cells")
 """Further options that are in the name of a directory, as they may change the pictures, or say how they were made."""
@@ -446,7 +447,11 @@ def _planned(arguments: argparse.Namespace, console: Console) -> list[Design]:
         paths = packaged_for(options)
         for reason, names in left_out(options).items():
             console.print(f"left out, as each {reason}: {', '.join(names)}", soft_wrap=True)
-    return plan_runs(paths, options, GATES_OPTIONS if gates else {}, arguments.fix, console)
+    small = dict(GATES_OPTIONS) if gates else {}
+    engine = ENGINES.get(options.get("engine", ""))
+    if engine is not None and not engine.line_buffered:
+        small.pop("units", None)  # such an engine has one per pixel of a clock
+    return plan_runs(paths, options, small, arguments.fix, console)
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:

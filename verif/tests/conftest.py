@@ -197,6 +197,7 @@ def random_values(start: int) -> tuple[str, str]:
 
 def set_day(monkeypatch: pytest.MonkeyPatch, day: int) -> None:
     """Let long runs draw their seed on a day of December 2026."""
+    monkeypatch.delenv(seeds.VARIABLE, raising=False)
     today = SimpleNamespace(today=lambda: datetime.date(2026, 12, day))
     monkeypatch.setattr(seeds, "datetime", SimpleNamespace(date=today))
 
