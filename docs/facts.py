@@ -10,6 +10,7 @@ from dataclasses import replace
 from pydantic.fields import FieldInfo
 from systemrdl.node import FieldNode, Node, RegNode
 
+from raycaster.buses import BUSES
 from raycaster.configuration import OPTIONS, configure
 from raycaster.docs.timing import CONFIGURATION, DIAGRAMS, kept, measured
 from raycaster.engines import ENGINES, beam, exact
@@ -50,6 +51,14 @@ def offers() -> str:
         chosen = f"`ROWS={count}`" if name == "vga" else f"`SCREEN={name}`"
         rows.append([f"monitor with {size}", chosen, *(cell(one, (name, count)) for one in engines)])
     return table(["", "option", *ENGINES], rows)
+
+
+def buses() -> str:
+    """Table of the buses, with the cycles that their bench measures."""
+    rows = [
+        [f"`BUS={name}`", bus.title, f"`{bus.port}_*`", bus.unit, bus.write, bus.read] for name, bus in BUSES.items()
+    ]
+    return table(["", "bus", "ports", "address unit", "cycles per write", "cycles per read"], rows)
 
 
 def seed_cycles() -> str:
@@ -187,6 +196,7 @@ def facts() -> dict[str, str]:
     return {
         "options": options(),
         "offers": offers(),
+        "buses": buses(),
         "seed_cycles": seed_cycles(),
         "seed_steps": seed_steps(),
         "exact_cycles": exact_cycles(light=False),

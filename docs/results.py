@@ -1,71 +1,57 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster results`: measure the engines or their scaling, and write all measured tables into the pages.
-
-With --list or --stale it only lists the stored figures.
-"""
+"""`raycaster results`: measure the engines that the README compares, and write all measured tables into the pages."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+import json
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from raycaster.configuration import configure
-from raycaster.digests import digest
-from raycaster.docs import beside, engine_figures, scaling
+from raycaster.convert.digest import verilog_digest
 from raycaster.docs.facts import facts
-from raycaster.docs.pages import HERE, need_clone, render_all
+from raycaster.docs.pages import need_clone, render_all
 from raycaster.docs.proofs import proofs
-from raycaster.docs.tables import keep_digests, listed, outcomes, tables
+from raycaster.docs.tables import is_stale, outcomes, tables
+from raycaster.engines import ENGINES
+from raycaster.errors import UserError
+from raycaster.fpga.cells import FAMILIES, measure
 from raycaster.options import CommandParser
-from raycaster.outcomes import RESULTS, Provenance, add_keep_option, keep, kept_outcome
+from raycaster.outcomes import RESULTS, add_keep_option, keep
 from raycaster.output import Console, Table, printable
 from raycaster.scene import packaged_scenes
+from raycaster.sim.scenes import RESULT, output_directory
+
+DESIGNS: tuple[Mapping[str, Any], ...] = (*({"engine": name} for name in ENGINES), {"engine": "beam", "rows": 180})
+"""Options of the compared designs; all other options have their defaults."""
 
 
-def _measure_engines(arguments: argparse.Namespace, console: Console) -> int:
-    designs = []
-    for options in engine_figures.DESIGNS:
-        name = configure(**options).name
-        with console.waiting(f"measuring {name}"):
-            designs.append(engine_figures.measured(options, arguments.output / name))
-    figures = {"scenes": len(packaged_scenes(plain=True)), "designs": designs}
-    keep(arguments, figures, {"rectangles": configure().rectangles}, provenance, "placing and routing")
-    return 0
+def measured(options: Mapping[str, Any], build: Path) -> dict[str, Any]:
+    """Draw the packaged scenes that every design can show, and count the cells of a design.
 
-
-def _measure_scaling(arguments: argparse.Namespace, console: Console) -> int:
-    designs = scaling.measure_scaling(arguments.output / "scaling", arguments.output, console)
-    keep(arguments, {"designs": designs}, {}, provenance, "placing and routing")
-    scaling.draw_scaling(designs, kept_outcome(arguments.keep).date, HERE / "scaling.svg")
-    return 0
-
-
-def _measure_beside(arguments: argparse.Namespace, console: Console) -> int:
-    checkouts = beside.checkouts_of(arguments.beside)
-    rows, failures = beside.measure_beside(beside.SCENE, checkouts, arguments.output / "beside", console)
-    keep(arguments, {"designs": rows}, {"scene": beside.SCENE}, provenance)
-    return int(bool(failures))
-
-
-def _show_all(console: Console) -> None:
-    """List the stored figures, each with a digest of everything that affects it."""
-    shown = Table("results/", "measured", "commit", "digest", "", texts=("measured", "commit", "digest", ""))
-    for one in outcomes().values():
-        deciding = digest(one.provenance) if one.provenance else ""
-        shown.add_row(one.name, one.date, one.commit, deciding, "stale" if one.changed else "holds")
-    console.print(shown)
-
-
-def _show_stale(console: Console) -> None:
-    """List the stored figures that no longer hold, with the command that measures each again."""
-    shown = Table("results/", "changed since", "measured again by", texts=("changed since", "measured again by"))
-    stale = [one for one in outcomes().values() if one.changed]
-    for one in stale:
-        shown.add_row(one.name, listed(one.changed).replace("`", ""), f"{one.command} --keep results/{one.name}.json")
-    console.print(shown if stale else "No figure is stale.")
-    if stale:
-        console.print(f"{len(stale)} of {len(outcomes())} are stale.", highlight=False)
+    Raises:
+        UserError: a scene failed or had wrong pixels, or the cells could not be counted.
+    """
+    config = configure(**options)
+    words = [word for name, value in options.items() for word in (f"--{name}", str(value))]
+    scenes = packaged_scenes(plain=True)
+    command = [sys.executable, "-m", "raycaster.cli", "sim", *words, "--build", str(build), *scenes]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise UserError(f"{' '.join(command[2:])}: {(done.stderr or done.stdout).strip().splitlines()[-1]}")
+    output = output_directory(build, [config.engine], options)
+    shown = [json.loads((output / name / RESULT).read_text()) for name in scenes]
+    cells, screen = measure(config, FAMILIES["ecp5"], build / "cells"), config.screen_geometry
+    return {
+        "options": dict(options), "columns": screen.columns, "rows": screen.rows,
+        **{name: sum(one[name] for one in shown) for name in ("pixels", "wrong_vs_golden", "wrong_vs_exact")},
+        "luts": cells.tables, "registers": cells.registers, "multipliers": cells.multipliers,
+        "clock_mhz": screen.clock_hz / 1e6,
+    }  # fmt: skip
 
 
 def command_parser() -> CommandParser:
@@ -73,14 +59,8 @@ def command_parser() -> CommandParser:
     parser = CommandParser("results", __doc__, "--render")
     asked = parser.add_mutually_exclusive_group()
     asked.add_argument("--render", action="store_true", help="only update the pages, from the files in results/")
-    asked.add_argument("--list", action="store_true", help="list the figures in results/, with dates and digests")
-    asked.add_argument("--stale", action="store_true", help="list the figures in results/ that no longer hold")
-    asked.add_argument("--scaling", action="store_true", help="measure designs of many sizes (a quarter of an hour)")
     asked.add_argument(
-        "--beside",
-        nargs="*",
-        metavar="NAME=CHECKOUT",
-        help="measure software, and other projects' designs in their checkouts",
+        "--stale", action="store_true", help="only list the figures in results/, and which no longer hold"
     )
     parser.add_argument(
         "--output", type=Path, default=Path("build/results"), help="directory for output files (%(default)s)"
@@ -89,29 +69,30 @@ def command_parser() -> CommandParser:
     return parser
 
 
-def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Return what decides the figures of the requested measurement."""
-    if arguments.scaling:
-        return scaling.provenance()
-    return engine_figures.provenance() if arguments.beside is None else beside.provenance()
+def verilog(arguments: argparse.Namespace) -> str:
+    """Digest the Verilog of the compared designs."""
+    return verilog_digest(*(configure(**options) for options in DESIGNS))
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command and return its exit code, 1 if a measurement failed."""
+def main(argv: Sequence[str] | None = None) -> None:
+    """Run the command."""
     arguments = command_parser().parse_args(argv)
     need_clone()
     console = Console()
-    if arguments.list or arguments.stale:
-        (_show_all if arguments.list else _show_stale)(console)
-        return 0
-    code = 0
+    if arguments.stale:
+        shown = Table("results/", "measured", "commit", "", "command", texts=("measured", "commit", "", "command"))
+        for one in outcomes():
+            shown.add_row(one.name, one.date, one.commit, "stale" if is_stale(one) else "holds", one.command)
+        console.print(shown)
+        return
     if not arguments.render:
-        measures = {"engines": _measure_engines, "scaling": _measure_scaling, "beside": _measure_beside}
-        name = "scaling" if arguments.scaling else "engines" if arguments.beside is None else "beside"
-        arguments.keep = arguments.keep or RESULTS / f"{name}.json"
-        code = measures[name](arguments, console)
-        outcomes.cache_clear()
-    keep_digests()
+        designs = []
+        for options in DESIGNS:
+            name = configure(**options).name
+            with console.waiting(f"measuring {name}"):
+                designs.append(measured(options, arguments.output / name))
+        arguments.keep = arguments.keep or RESULTS / "engines.json"
+        figures = {"rectangles": configure().rectangles, "scenes": len(packaged_scenes(plain=True)), "designs": designs}
+        keep(arguments, figures, verilog, "placing and routing")
     for page in render_all(facts() | tables() | proofs()):
         print(printable(f"written: {page}"))
-    return code

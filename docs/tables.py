@@ -1,227 +1,213 @@
 # SPDX-License-Identifier: MIT
-"""Tables of measured figures for the pages, and the check that the figures still hold.
-
-The module of each command defines its tables (`PUBLISHED`), its rows in the table of checks (`CHECKS`), and a function
-that returns what decides its figures (`provenance`). A figure is stale if the digests in its stored file differ.
-"""
+"""Tables of the measured figures in `results/`, in Markdown; `raycaster results --render` puts them on the pages."""
 
 from __future__ import annotations
 
-import json
 import shlex
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping
 from fnmatch import fnmatch
 from functools import cache
-from importlib.metadata import distributions
-from pathlib import Path
-from typing import Any
 
-from filelock import FileLock
-
-from raycaster.buses import BUSES, OWN
 from raycaster.cli.__main__ import loaded
 from raycaster.cli.commands import COMMANDS
 from raycaster.complaints import as_typed
-from raycaster.configuration import Configuration
-from raycaster.convert.provenance import ROOT, Provenance, verilog_digest
-from raycaster.digests import code_digest, tool_versions
-from raycaster.docs import beside, engine_figures, scaling
+from raycaster.engines import ENGINES
 from raycaster.errors import UserError
-from raycaster.fpga import area, bitstream, fit
-from raycaster.jobs import processes, run_jobs
-from raycaster.outcomes import RESULTS, Check, Digests, Outcome, Published, kept_outcome, table
-from raycaster.output import Console
-from raycaster.play import game
-from raycaster.report import __main__ as report
-from raycaster.sim import scenes
-from raycaster.verif import everything
-from raycaster.verif.coverage import measure as coverage
-from raycaster.verif.formal import prove
-from raycaster.verif.mutation import mutate
-from raycaster.verif.soak import soak
-from raycaster.verif.upsets import upsets
-from raycaster.web import site
-
-DECIDING = (
-    "hdl", "rtl", "raycaster", "convert", "golden", "fit", "fpga", "sim", "play", "web", "sw", "report", "scenes",
-    *(f"verif/{name}" for name in ("coverage", "formal", "mutation", "soak", "upsets")),
-    "verif/random_scenes.py", "docs/engine_figures.py", "docs/scaling.py",
-)  # fmt: skip
-"""Sources on which any digest may depend: digests are only computed again if one of them changes."""
-
-HARDWARE = ("hdl", "rtl", "convert", "raycaster")
-"""Sources on which the Verilog of a design may depend: `convert` imports nothing else."""
-
-CONVERTERS = ("myhdl", "numpy", "systemrdl-compiler")
-"""Packages on which the Verilog of a design may depend."""
-
-DIGESTS = RESULTS / "verilog.digests"
-"""Digests of the measured designs' Verilog, in JSON; they hold while the sources and packages above stay the same."""
-
-STORE = ROOT / "build" / "provenance.json"
-"""Digests of everything that affects the stored figures, when they were last computed."""
-
-JOBS = 2
+from raycaster.outcomes import RESULTS, Outcome, kept_outcome, table
+from raycaster.report.designs import best_of, of_kept
 
 
-def _buses(kept: Outcome) -> str:
-    """Return the table of buses, with the cycles that their bench measures."""
-    areas = {row["bus"]: row for row in kept.figures["bridges"]}
+def _engines(kept: Outcome) -> str:
+    """The README's comparison, with a note below it."""
+    figures, rows = kept.figures, []
+    for row in figures["designs"]:
+        options = " ".join(f"{name.upper()}={value}" for name, value in row["options"].items())
+        wrong, clock = f"{row['wrong_vs_exact']:,} of {row['pixels']:,}", f"{row['clock_mhz']:g} MHz"
+        counts = [row[kind] for kind in ("luts", "registers", "multipliers")]
+        rows.append([f"`{options}`", f"{row['columns']} x {row['rows']}", wrong, *counts, clock])
+    headings = ["engine", "rays per frame", "wrong pixels", "LUT4", "registers", "multipliers", "required clock"]
+    unlike = sum(row["wrong_vs_golden"] for row in figures["designs"])
+    return (
+        f"{table(headings, rows)}\n\nWrong pixels differ from exact arithmetic, counted over {figures['scenes']} "
+        f"scenes; {unlike} pixels differ from the engine's own model. Cell counts are Yosys's for an ECP5, before "
+        f"placement. Each design holds {figures['rectangles']} rectangles; the seed engine has culling, the others do "
+        "not."
+    )
+
+
+def _scenes(kept: Outcome) -> str:
+    """All scenes, each with the engine that `make sim` chooses."""
     rows = []
-    for name, bus in BUSES.items():
-        cells = [0 if name == OWN else areas[name][kind] for kind in ("tables", "registers")]
-        rows.append([f"`BUS={name}`", bus.title, f"`{bus.port}_*`", bus.unit, bus.write, bus.read, *cells])
-    return table(["", "bus", "ports", "address unit", "cycles per write", "cycles per read", "LUT4", "registers"], rows)
+    for row in kept.figures["scenes"]:
+        engine, wrong = row["configuration"].partition("-")[0], row["wrong_vs_exact"]
+        counts = [row[name] for name in ("worst_row_cycles", "worst_group_cycles", "frame_cycles")]
+        differ = [row["wrong_vs_golden"], f"{wrong:,} ({wrong / row['pixels']:.2%})"]
+        rows.append([row["scene"], engine, row["reflections"], *differ, *counts, f"{row['sim_seconds']:.1f} s"])
+    headings = [
+        "scene", "engine", "reflections", "differ from the model", "differ from exact arithmetic", "slowest row",
+        "slowest group", "frame", "simulated in",
+    ]  # fmt: skip
+    return table(headings, rows)
 
 
-CHECKS: Sequence[Check] = (
-    *scenes.CHECKS, *soak.CHECKS, *game.CHECKS, *prove.CHECKS, *mutate.CHECKS,
-    *upsets.CHECKS, *coverage.CHECKS, *everything.CHECKS,
-)  # fmt: skip
-"""Rows of the table of long-running checks."""
+def _families(kept: Outcome) -> str:
+    """Cells of the seed engine's default design in three families of chips."""
+    titles = {
+        "ecp5": "ECP5, LUT4",
+        "cycloneive": "Cyclone IV E, logic elements",
+        "cyclonev": "Cyclone V, ALMs at least",
+    }
+    rows = []
+    for name, title in titles.items():
+        found = kept.figures["families"][name]
+        whole, parts = found["units"]["32"], [found[part]["elements"] for part in ("shared", "unit")]
+        rows.append([title, whole["elements"], *parts, whole["registers"], whole["multipliers"]])
+    return table(["family", "logic", "shared", "one unit", "registers", "multipliers"], rows)
+
+
+def _features(kept: Outcome) -> str:
+    """Cells of each engine without and with its optional features, such as a turning camera."""
+    rows = []
+    for row in kept.figures["designs"]:
+        switches = " ".join(f"{name.upper()}=1" for name in row["options"])
+        part = ", one ray unit" if row["module"] == "ray_unit" else ""
+        counts = [row[kind] for kind in ("tables", "registers", "multipliers")]
+        rows.append([f"`ENGINE={row['engine']}`{part}", f"`{switches}`" if switches else "", *counts])
+    return table(["engine", "with", "LUT4", "registers", "multipliers"], rows)
+
+
+def _bitstreams(*kept: Outcome) -> str:
+    """Bitstreams that were placed and routed, by board."""
+    rows = []
+    for figures in (one.figures for one in kept):
+        counts = [figures["cells"][figures["kinds"][kind]] for kind in ("logic", "multipliers")]
+        clocks = [figures["clocks"].get(name) for name in ("clk", "shift_clk")]
+        cells = [f"{used:,} of {there:,}" for used, there in counts]
+        reached = [f"{one[0]:.2f} of {one[1]:g} MHz" if one else "" for one in clocks]
+        rows.append(
+            [figures["title"].partition(",")[0], figures["chip"], f"`{figures['configuration']}`", *cells, *reached]
+        )
+    return table(["board", "chip", "design", "logic cells", "multipliers", "system clock", "shift clock"], rows)
+
+
+def _one_scene(kept: Outcome) -> str:
+    """Cells of designs with a scene built in, also relative to the general design."""
+    scopes, rows = ("rects", "all"), []
+    for scene, designs in kept.figures.items():
+        luts, cells = {(one["engine"], one["scope"]): one["luts"] for one in designs}, []
+        for engine in ENGINES:
+            general = luts[engine, "general"]
+            cells += [general, *(f"{luts[engine, scope]:,} ({luts[engine, scope] / general:.0%})" for scope in scopes)]
+        rows.append([scene, *cells])
+    headings = (word for engine in ENGINES for word in (engine, *(f"{engine} `FIX={scope}`" for scope in scopes)))
+    return table(["scene", *headings], rows)
+
+
+def _error_and_time(kept: Outcome) -> str:
+    """The designs on a frontier of error, time and cells."""
+    rows = []
+    for one in best_of(of_kept(kept.figures["designs"])):
+        screen = one.config.screen_geometry
+        pixel_ns = one.required_ms * 1e6 / screen.columns / screen.rows
+        rows.append([one.title, one.cells, f"{pixel_ns:.2f}", f"{one.required_ms:.2f}", f"{one.error:.4%}"])
+    return table(["design", "LUT4", "ns per pixel", "ms per frame", "mean share of wrong pixels"], rows)
+
+
+def _page_speed(kept: Outcome) -> str:
+    """Frame times of the page's walk, compared with the same design compiled natively on the same machine."""
+    rows = [
+        [f"`{row['scene']}`", f"{row['browser_ms']:.0f} ms", f"{row['native_ms']:.0f} ms", f"{row['shown']:.1f}"]
+        for row in kept.figures["scenes"]
+    ]
+    return table(["scene", "in the browser", "native", "frames per second, each checked"], rows)
+
+
+SOAKED = "{scenes:,} scenes, {pixels:,} pixels, {wrong_vs_golden} wrong"
+COVERED = "lines {lines[0]:,} of {lines[1]:,}, conditions {conditions[0]:,} of {conditions[1]:,}"
+CHECKS = {
+    "soak-seed": ("random scenes, surfaces of all kinds, full size", "seed", SOAKED),
+    "soak-exact": ("random scenes, turned cameras and surfaces of all kinds, full size", "exact", SOAKED),
+    "soak-beam": ("random scenes, turned cameras and surfaces of all kinds, full size", "beam", SOAKED),
+    "prove": ("proofs", "as the table below says", "{proved} of {proofs} proved"),
+    "mutate": (
+        "faults planted in modules", "the modules' leaf tests",
+        "{caught:,} caught in {modules} modules; {caught_of_the_rest:.1%} of those that change something, "
+        "{worst_caught:.1%} in the worst module",
+    ),
+    "coverage": ("code coverage", "seed", COVERED),
+    "coverage-exact": ("code coverage", "exact", COVERED),
+    "coverage-beam": ("code coverage", "beam", COVERED),
+    "verify-all": ("all tests, slow ones included", "each", "{passed:,} tests passed, {skipped} were skipped"),
+}  # fmt: skip
+"""Rows of the table of long checks by the file of their figures: the check, the engine, and a format of the figures."""
 
 
 def _checks(*kept: Outcome) -> str:
-    by_name = {one.name: one for one in kept}
+    """The long checks."""
     rows = []
-    for check in CHECKS:
-        of_it = [by_name[name] for name in check.kept]
-        commands, dates = "<br>".join(f"`{one.asked()}`" for one in of_it), "<br>".join(one.when for one in of_it)
-        rows.append([check.title, check.engine, check.body(*of_it), commands, dates])
-    return table(["check", "engine", "result", "command", "measured"], rows)
+    for one in kept:
+        title, engine, words = CHECKS[one.name]
+        rows.append([title, engine, words.format_map(one.figures), _measured(one)])
+    return table(["check", "engine", "result", "measured"], rows)
 
 
-PUBLISHED: Sequence[Published] = (
-    *engine_figures.PUBLISHED, *scenes.PUBLISHED, *area.PUBLISHED, *fit.PUBLISHED, *bitstream.PUBLISHED,
-    *site.PUBLISHED, *scaling.PUBLISHED, *report.PUBLISHED, *beside.PUBLISHED,
-    *mutate.PUBLISHED,
-    Published("buses", ["bridges"], _buses),
-    Published("checks", list(dict.fromkeys(name for check in CHECKS for name in check.kept)), _checks, dated=True),
-)  # fmt: skip
+TABLES: Mapping[str, tuple[tuple[str, ...], Callable[..., str]]] = {
+    "engines": (("engines",), _engines),
+    "scenes": (("sim",), _scenes),
+    "families": (("area",), _families),
+    "features": (("features",), _features),
+    "bitstreams": (("bitstream-*",), _bitstreams),
+    "one_scene": (("fit",), _one_scene),
+    "error_and_time": (("report",), _error_and_time),
+    "page_speed": (("web",), _page_speed),
+    "checks": (tuple(CHECKS), _checks),
+}
+"""Tables by the names of their markers in the pages: the files of the figures, and a function that makes Markdown."""
+
+
+def outcomes() -> list[Outcome]:
+    """Read all kept figures."""
+    return [kept_outcome(path) for path in sorted(RESULTS.glob("*.json"))]
 
 
 def tables() -> dict[str, str]:
-    """Return all tables of stored figures, in Markdown, by the names in the pages' markers.
+    """Return all tables in Markdown, by the names of their markers.
 
     Raises:
-        UserError: a stored file that a table needs is missing.
+        UserError: a file that a table needs is missing.
     """
-    return {one.name: _shown(one) for one in PUBLISHED}
+    found, kept = {}, outcomes()
+    for name, (patterns, body) in TABLES.items():
+        chosen = [[one for one in kept if fnmatch(one.name, pattern)] for pattern in patterns]
+        for pattern, of_it in zip(patterns, chosen, strict=True):
+            if not of_it:
+                raise UserError(
+                    f"{name}: {RESULTS / pattern}.json is missing; a command with {as_typed('keep')} writes it"
+                )
+        of_table = [one for of_it in chosen for one in of_it]
+        measured = "" if body is _checks else f"\n\nMeasured: {'; '.join(map(_measured, of_table))}."
+        found[name] = body(*of_table) + measured
+    [mutate] = (one for one in kept if one.name == "mutate")
+    return found | {"not_mutated": mutate.left_out}
 
 
-def _shown(published: Published) -> str:
-    kept = []
-    for pattern in published.kept:
-        found = [one for name, one in outcomes().items() if fnmatch(name, pattern)]
-        if not found:
-            raise UserError(
-                f"{published.name}: {RESULTS / pattern}.json is missing; a command with {as_typed('keep')} writes it"
-            )
-        kept += found
-    body = published.body(*kept)
-    return body if published.dated else f"{body}\n\n{_measured(kept)}"
-
-
-def _measured(kept: Sequence[Outcome]) -> str:
-    """Return a line with the commands and dates of the measurements, and the changes since."""
-    lines = []
-    for one in kept:
-        left_out = f"; not measured: {one.scope['left_out']}" if one.scope.get("left_out") else ""
-        lines.append(f"`{one.asked()}`, {one.date}{left_out}")
-    changed = list(dict.fromkeys(name for one in kept for name in one.changed))
-    return f"Measured: {'; '.join(lines)}.{f' **Stale**: {listed(changed)} changed since.' if changed else ''}"
-
-
-def listed(names: Sequence[str], most: int = 3) -> str:
-    """List the first names and the number of further ones."""
-    more = len(names) - most
-    return ", ".join([*(f"`{name}`" for name in names[:most]), *([f"{more} more"] if more > 0 else [])])
+def _measured(one: Outcome) -> str:
+    left_out = f"; not measured: {one.left_out}" if one.left_out and one.name not in CHECKS else ""
+    return f"`{one.asked()}`, {one.date}{', **stale**' if is_stale(one) else ''}{left_out}"
 
 
 @cache
-def outcomes() -> Mapping[str, Outcome]:
-    """Read all stored figures, by file name, and find the changes since each was measured."""
-    kept = [kept_outcome(path) for path in sorted(RESULTS.glob("*.json"))]
-    current = _current(list(dict.fromkeys(one.command for one in kept)))
-    return {one.name: replace(one, changed=_changed(one.provenance, current[one.command])) for one in kept}
-
-
-def _current(commands: Sequence[str]) -> Mapping[str, Digests | str]:
-    """Return the current digests for the figures of these commands, or the reason why a command is refused.
-
-    Digests are stored in build/ and computed again if a source or a tool has changed; those of designs, which take most
-    of the time, only if the hardware or its conversion has. A new clone takes these from `DIGESTS`.
-    """
-    console = Console(stderr=True)
-    state = _state(DECIDING, [one.name for one in distributions()])
-    hardware = _state(HARDWARE, CONVERTERS)
-    # New processes, because MyHDL searches all loaded modules repeatedly, and a test has loaded many.
-    pool = processes(JOBS, spawned=True)
-    STORE.parent.mkdir(exist_ok=True)
-    with FileLock(STORE.with_suffix(".lock")):
-        stored = _read(STORE)
-        found = stored["found"] if stored.get("state") == state else {}
-        kept = [one for one in (stored, _read(DIGESTS)) if one.get("hardware") == hardware]
-        known = kept[0]["designs"] if kept else {}
-        wanted = [command for command in commands if command not in found]
-        if wanted:
-            described = run_jobs("commands", _described, wanted, pool, console)
-            designs = {one.name: one for each in described if isinstance(each, Provenance) for one in each.designs}
-            new = [one for name, one in designs.items() if name not in known]
-            known |= zip((one.name for one in new), run_jobs("designs", _digested, new, pool, console), strict=True)
-            made = (each.digests(known) if isinstance(each, Provenance) else each for each in described)
-            found |= zip(wanted, made, strict=True)
-            partly = STORE.with_suffix(".partial")
-            partly.write_text(json.dumps({"state": state, "found": found, "hardware": hardware, "designs": known}))
-            partly.replace(STORE)
-    return found
-
-
-def _state(places: Sequence[str], packages: Sequence[str]) -> list[str]:
-    versions = sorted(tool_versions(*packages).items())
-    return [*(code_digest(ROOT / place, ROOT) for place in places), *(" ".join(each) for each in versions)]
-
-
-def _read(path: Path) -> dict[str, Any]:
-    return json.loads(path.read_text()) if path.exists() else {}
-
-
-def keep_digests() -> None:
-    """Write `DIGESTS`, for the stored figures' designs as they are now."""
-    commands = [one.command for one in outcomes().values()]  # this also updates STORE
-    stored = _read(STORE)
-    now = [stored["found"][command] for command in commands]
-    wanted = {name for each in now if not isinstance(each, str) for name in each["designs"]}
-    designs = {name: digest for name, digest in sorted(stored["designs"].items()) if name in wanted}
-    DIGESTS.write_text(f"{json.dumps({'hardware': stored['hardware'], 'designs': designs}, indent=1)}\n")
-
-
-def _described(command: str) -> Provenance | str:
-    """Return the current provenance of a command's figures, or the reason why the command is refused."""
+def current_digest(command: str) -> str:
+    """Return the digest of the Verilog that a command would measure now; nothing if it is refused."""
     words = shlex.split(command)[1:]
     taken = 2 if " ".join(words[:2]) in COMMANDS else 1
     try:
         module = loaded(COMMANDS[" ".join(words[:taken])])
-        return module.provenance(module.command_parser().parse_args(words[taken:]))
-    except UserError as error:
-        return str(error)
+        return module.verilog(module.command_parser().parse_args(words[taken:]))
+    except UserError:
+        return ""
 
 
-def _digested(design: Configuration) -> str:
-    """Return the digest of a design's Verilog, or the reason why it has none."""
-    try:
-        return verilog_digest(design)
-    except UserError as error:
-        return f"refused: {error}"
-
-
-def _changed(then: Digests, now: Digests | str) -> Sequence[str]:
-    """Name everything whose digest has changed, appeared or disappeared."""
-    if isinstance(now, str):
-        return [f"the command, which is refused: {now}"]
-    found = []
-    for kind, digests in now.items():
-        before = then.get(kind, {})
-        found += sorted(name for name in digests.keys() | before.keys() if digests.get(name) != before.get(name))
-    return found
+def is_stale(kept: Outcome) -> bool:
+    """Return True if the Verilog that was measured is not that of today."""
+    return kept.verilog != current_digest(kept.command)

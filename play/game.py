@@ -15,7 +15,7 @@ from PIL import Image
 from rich.progress import Progress, track
 
 from raycaster.configuration import WORLD_SIZE, configure
-from raycaster.convert.provenance import Provenance
+from raycaster.convert.digest import verilog_digest
 from raycaster.design import Design
 from raycaster.errors import UserError
 from raycaster.options import (
@@ -25,7 +25,7 @@ from raycaster.options import (
     add_scene_argument,
     given_options,
 )
-from raycaster.outcomes import Check, add_keep_option, keep, scope_of
+from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table, emptied, printable
 from raycaster.play.machine import Machine, build_machine
 from raycaster.play.system import FASTEST, play
@@ -126,23 +126,11 @@ def command_parser() -> CommandParser:
     return parser
 
 
-def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the command's figures."""
+def verilog(arguments: argparse.Namespace) -> str:
+    """Digest the Verilog that draws the frames, without the processor's."""
     if arguments.scene:
-        design = design_to_walk(arguments.scene, given_options(arguments))
-        return Provenance([design.configuration], ["golden", "scenes"])
-    sources = ["golden", "sw", "rtl/system"]
-    return Provenance(
-        [configure(**FASTEST | given_options(arguments))], sources, ["pythondata-cpu-picorv32", "ziglang"]
-    )
-
-
-CHECKS = (
-    Check(
-        "the recorded game, full RTL", "beam", ["game"],
-        lambda kept: "{frames} frames, {pixels:,} pixels, {wrong} wrong".format_map(kept.figures),
-    ),
-)  # fmt: skip
+        return verilog_digest(design_to_walk(arguments.scene, given_options(arguments)).configuration)
+    return verilog_digest(configure(**FASTEST | given_options(arguments)))
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -166,7 +154,7 @@ def _film_scene(arguments: argparse.Namespace) -> int:
     write_animation(sorted(output.glob("frame_*.png")), output / ANIMATION)
     screen = design.configuration.screen_geometry
     figures = {"frames": arguments.frames, "pixels": arguments.frames * screen.columns * screen.rows, "wrong": wrong}
-    keep(arguments, figures, scope_of(design.configuration), provenance)
+    keep(arguments, figures, verilog)
     console.print(
         f"{design.configuration.name}: {arguments.frames} frames, {wrong:,} pixels differ from exact arithmetic; "
         f"{output / ANIMATION}, and each frame next to it",
@@ -205,6 +193,6 @@ def _film_game(arguments: argparse.Namespace) -> int:
     table.add_row(configuration.name, result["frames"], result["shown"], result["wrong"], rate, f"{speed:.2f}")
     console.print(table)
     figures = {key: result[key] for key in ("frames", "pixels", "wrong")} | {"frames_a_second": round(speed, 2)}
-    keep(arguments, figures, scope_of(configuration), provenance)
+    keep(arguments, figures, verilog)
     console.print(f"{output / ANIMATION}, and next to it each frame and {SHEET}")
     return 0

@@ -3,14 +3,11 @@
 
 from __future__ import annotations
 
-import ast
 import contextlib
 import hashlib
 import importlib.metadata
 import re
-import tokenize
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from io import StringIO
+from collections.abc import Iterator
 from pathlib import Path
 
 LEFT_OUT = "__pycache__", "build", "tests"
@@ -50,57 +47,10 @@ def digest(*parts: object) -> str:
     return found.hexdigest()[:DIGITS]
 
 
-def code_digest(place: Path, root: Path) -> str:
-    """Compute a digest of a file, or of the files in a folder, that does not depend on comments.
-
-    Comments, docstrings and empty lines do not count, as far as `STRIPPED` knows them.
-
-    Args:
-        place: a file or a folder.
-        root: the folder that file names are relative to.
-    """
-    digest = hashlib.sha256()
-    for path in sorted(_files(place)) if place.is_dir() else [place]:
-        strip = STRIPPED.get(path.suffix)
-        content = strip(path.read_text()).encode() if strip else path.read_bytes()
-        digest.update(f"{path.relative_to(root).as_posix()}\0".encode() + content + b"\0")
-    return digest.hexdigest()[:DIGITS]
-
-
 def uncommented(verilog: str) -> str:
     """Return Verilog without comments and empty lines."""
-    return _filled(re.sub(r"//.*", "", line) for line in verilog.splitlines())
-
-
-def _code(text: str) -> str:
-    """Return Python without comments and docstrings; as text, since syntax trees differ between Python versions."""
-    lines = text.splitlines()
-    for token in tokenize.generate_tokens(StringIO(text).readline):
-        if token.type == tokenize.COMMENT:
-            row, column = token.start
-            lines[row - 1] = lines[row - 1][:column]
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
-            for row in range(node.lineno, (node.end_lineno or node.lineno) + 1):
-                lines[row - 1] = ""
-    return _filled(lines)
-
-
-def _without_lines(mark: str) -> Callable[[str], str]:
-    """Return what removes lines that begin with a mark, and empty lines."""
-    return lambda text: _filled(line for line in text.splitlines() if not line.lstrip().startswith(mark))
-
-
-def _filled(lines: Iterable[str]) -> str:
-    """Join the lines that are not empty."""
-    return "\n".join(line for line in map(str.rstrip, lines) if line)
-
-
-STRIPPED: Mapping[str, Callable[[str], str]] = {
-    ".py": _code, ".v": uncommented, ".toml": _without_lines("#"),
-    **dict.fromkeys((".c", ".h", ".cpp", ".js"), _without_lines("//")),
-}  # fmt: skip
-"""By the ending of a file, what leaves its code without comments: all of them, or those on lines of their own."""
+    lines = (re.sub(r"//.*", "", line).rstrip() for line in verilog.splitlines())
+    return "\n".join(filter(None, lines))
 
 
 def _files(folder: Path) -> Iterator[Path]:

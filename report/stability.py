@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from raycaster.outcomes import RESULTS, kept_outcome
 from raycaster.report import plots
 from raycaster.report.arithmetics import Results, case_measures
 from raycaster.report.errors import ROUNDINGS
@@ -22,9 +21,6 @@ FLIPPED, LABELLED = 12, 6
 
 LEAST = 0.1
 """Lower limit for drawing errors, in world units; smaller errors are drawn at this value."""
-
-STIFF_CHECKS = "soak-exact-stiff.json", "soak-beam-stiff.json"
-"""Kept checks in which the engines without rounding draw the cases in simulation."""
 
 COLUMNS = (
     "case", "F", "rounding", "condition", "wrong pixels", "rays flipped", "worst error", "bound", "error / bound",
@@ -81,7 +77,6 @@ def _judged(pictures: Results, conditions: Mapping[str, float | None]) -> tuple[
     over = [point for point, result in pictures.items() if result["exceeded"]]
     tightest, most = (max(pictures, key=lambda point: pictures[point][key]) for key in ("tightest", "wrong"))
     part = pictures[tightest]["tightest"]
-    soaks = [kept_outcome(RESULTS / name) for name in STIFF_CHECKS]
     stiffest = max(conditions, key=lambda name: conditions[name] or 0)
     alarms = [f"A bound is exceeded: {words(one)}. {one.command}" for one in over]
     said = [
@@ -90,12 +85,6 @@ def _judged(pictures: Results, conditions: Mapping[str, float | None]) -> tuple[
         f"{len(over)} of the seed engine's {len(pictures)} pictures, for {len({one.what for one in pictures})} cases, "
         f"have a coordinate over its bound. The closest to its bound ({words(tightest)}) has {part:.2%} of it. The "
         f"most wrong pixels ({words(most)}) are {pictures[most]['wrong']:,} of {pictures[most]['pixels']:,}.",
-        *(
-            f"The {of.scope['engine']} engine drew the {of.figures['scenes']} cases that it can show in simulation, "
-            f"with {of.figures['wrong_vs_exact']} of {of.figures['pixels']:,} pixels unlike exact arithmetic "
-            f"({of.date}: `{of.command}`)."
-            for of in soaks
-        ),
     ]
     summary = (
         f"In {len(conditions)} stiff and extreme cases, {len(over)} bounds are exceeded, and errors reach at most "

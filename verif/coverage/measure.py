@@ -23,11 +23,11 @@ from rich.text import Text
 
 from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration, configure
-from raycaster.convert.provenance import Provenance
+from raycaster.convert.digest import verilog_digest
 from raycaster.errors import UserError
 from raycaster.jobs import Kept, add_fresh_option, processes, run_jobs
 from raycaster.options import CommandParser
-from raycaster.outcomes import Check, Outcome, add_keep_option, keep, scope_of
+from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table, emptied
 from raycaster.scene import find_scene, load_scene, packaged_scenes
 from raycaster.sim.job import Job
@@ -234,33 +234,15 @@ def command_parser() -> CommandParser:
     return parser
 
 
-def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest everything that decides the figures of the command."""
-    designs = DESIGNS[arguments.engine], SOAK_DESIGNS[arguments.engine]
-    return Provenance(designs, ["golden", "scenes", "verif/coverage", "verif/random_scenes.py"], ["verilator"])
+def verilog(arguments: argparse.Namespace) -> str:
+    """Digest the Verilog that is covered."""
+    return verilog_digest(DESIGNS[arguments.engine], SOAK_DESIGNS[arguments.engine])
 
 
 def functions_of(design: Configuration) -> list[tuple[Cross, Callable[..., np.ndarray]]]:
     """List the crosses of a design, each with the function that counts its bins in a scene."""
     intersections = cross_of(design), count_intersections
     return [intersections, (HIT_POINTS, count_hit_points)] if design.light else [intersections]
-
-
-def _found(kept: Outcome) -> str:
-    figures = kept.figures
-    (hit, there), shown = figures["bins"], figures["scenes"]
-    code = ", ".join(f"{kind} {figures[kind][0]:,} of {figures[kind][1]:,}" for kind in KINDS)
-    names = [name for name in ("intersections", HIT_POINTS.name) if name in figures]
-    kinds = " and ".join(name.removesuffix("s").replace("_", " ") for name in names)
-    counted = " and ".join(f"{figures[name]:,} {name.replace('_', ' ')}" for name in names)
-    return f"{code}; {hit} of {there} kinds of {kinds}, {counted} in {shown} scenes"
-
-
-CHECKS = (
-    Check("code and functional coverage", "seed, culling", ["coverage"], _found),
-    Check("code and functional coverage", "exact, culling, light", ["coverage-exact"], _found),
-    Check("code and functional coverage", "beam", ["coverage-beam"], _found),
-)
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -314,7 +296,7 @@ def main(argv: list[str] | None = None) -> int:
         holes, bins = holes + len(functional.holes), bins + len(functional.bins)
     figures["bins"] = bins - holes, bins
     left_out = "the other engines, a camera that turns, materials and patterns"
-    keep(arguments, figures, scope_of(design), provenance, left_out)
+    keep(arguments, figures, verilog, left_out)
     for failure in failures:
         console.print(failure, style="red", soft_wrap=True)
     console.print(f"{time.perf_counter() - started:.0f} s; figures and holes are in {output}/")

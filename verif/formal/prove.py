@@ -20,11 +20,11 @@ from typing import Any
 
 from rich.text import Text
 
-from raycaster.convert.provenance import Provenance
+from raycaster.convert.digest import verilog_digest
 from raycaster.errors import UserError, not_installed
 from raycaster.jobs import add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
-from raycaster.outcomes import Check, add_keep_option, keep
+from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table
 from raycaster.tools import TIMEOUT
 from raycaster.verif.formal.lemmas import LEMMAS, Lemma, prove_lemma
@@ -53,17 +53,9 @@ def command_parser() -> CommandParser:
     return parser
 
 
-def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest everything that decides the figures."""
-    return Provenance(with_all_looks(), ["verif/formal"], list(TOOLS))
-
-
-CHECKS = (
-    Check(
-        "proofs", "as the table below says", ["prove"],
-        lambda kept: "{proved} of {proofs} proved".format_map(kept.figures),
-    ),
-)  # fmt: skip
+def verilog(arguments: argparse.Namespace) -> str:
+    """Digest the Verilog of the designs whose blocks have proofs."""
+    return verilog_digest(*with_all_looks())
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -101,8 +93,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     results.sort(key=lambda result: PROOFS.index(result.proof))
     console.print(_table(results))
     failures = [result for result in results if not result.proved]
-    scope = {"small": arguments.small}
-    keep(arguments, _figures(results), scope, provenance, left_out="all that no property names")
+    keep(arguments, _figures(results), verilog, left_out="all that no property names")
     for result in failures:
         console.print(f"{result.proof.name}, {result.proof.label}: {result.outcome}", style="red", soft_wrap=True)
         if result.detail:

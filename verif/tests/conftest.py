@@ -24,7 +24,7 @@ from vectors import Bench as LeafBench
 
 from raycaster.cli.__main__ import main
 from raycaster.configuration import Configuration, configure
-from raycaster.convert import provenance
+from raycaster.convert import digest
 from raycaster.hdl.elaboration import forgetting
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.verilog_style import without_power_up
@@ -143,7 +143,7 @@ def leaf_of(tmp_path: Path) -> Callable[..., LeafBench]:
 @pytest.fixture
 def names_for_digests(monkeypatch: pytest.MonkeyPatch) -> None:
     """Do not digest designs in a test that keeps figures: the name of a design replaces the digest of its Verilog."""
-    monkeypatch.setattr(provenance, "verilog_digest", lambda configuration: configuration.name)
+    monkeypatch.setattr(digest, "digest_of", lambda configuration: configuration.name)
 
 
 @pytest.fixture

@@ -107,7 +107,7 @@ OF_COMMANDS = {
     "area": [
         ("--family ice40", "family: expected one of ecp5, cycloneive, cyclonev, got ice40"),
         ("--features --engine beam", "features: counts a fixed set of designs"),
-        ("--bridges --route-only", "bridges: counts a fixed set of designs"),
+        ("--features --route-only", "features: counts a fixed set of designs"),
     ],
     "verify upsets": [
         ("--cases 0", "argument --cases: invalid positive value: '0'"),

@@ -178,13 +178,10 @@ def test_designs_of_each_engine():
 def test_time_at_the_slowest_routed_clock(tmp_path, monkeypatch):
     """A design that was routed twice counts with the slower clock; one that was not, with its monitor's."""
     exact, seed_design = found(configure(engine="exact"), 0, 4000, 100_000), found(configure(), 0.1, 9000, 100_000)
-    clocks = {
-        "bitstream-a": {"clocks": {"clk": [80.0, 50]}}, "bitstream-b": {"clocks": {"clk": [62.5, 50]}},
-        "area-c": {"routed_mhz": 70.0}, "sim": {"routed_mhz": 1.0},
-    }  # fmt: skip
-    for name, figures in clocks.items():
-        kept = {"scope": {"configuration": exact.config.name}, "figures": figures}
-        (tmp_path / f"{name}.json").write_text(json.dumps(kept))
+    for name, mhz in (("a", 80.0), ("b", 62.5)):
+        figures = {"configuration": exact.config.name, "clocks": {"clk": [mhz, 50]}}
+        kept = dict.fromkeys(("command", "date", "commit", "tools", "verilog", "left_out")) | {"figures": figures}
+        (tmp_path / f"bitstream-{name}.json").write_text(json.dumps(kept))
     monkeypatch.setattr(designs, "RESULTS", tmp_path)
     monkeypatch.setattr(designs, "routed_clocks", designs.routed_clocks.__wrapped__)
     assert (exact.is_routed, exact.clock_mhz, exact.frame_ms) == (True, 62.5, 1.6)

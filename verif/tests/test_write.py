@@ -16,7 +16,7 @@ import pytest
 from raycaster import rtl
 from raycaster.configuration import configure
 from raycaster.convert import write
-from raycaster.convert.provenance import verilog_digest
+from raycaster.convert.digest import verilog_digest
 from raycaster.convert.take_home import FILE_LIST
 from raycaster.convert.write import write_verilog
 from raycaster.hdl.errors import UserError

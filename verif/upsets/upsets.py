@@ -10,10 +10,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from raycaster.configuration import Configuration, configure, need_avalon
-from raycaster.convert.provenance import Provenance
+from raycaster.convert.digest import verilog_digest
 from raycaster.options import CommandParser, given_options
-from raycaster.outcomes import Check, keep, scope_of
-from raycaster.outcomes import Outcome as Kept
+from raycaster.outcomes import keep
 from raycaster.output import Console, Table
 from raycaster.sim.simulator import VERILATOR_FLAGS, convert
 from raycaster.verif.campaign import Campaign, add_campaign_options, repeated, run_asked
@@ -68,30 +67,9 @@ def _configuration(arguments: argparse.Namespace) -> Configuration:
     return configure(**{"screen": "tiny", "allow_underrun": True} | given_options(arguments))
 
 
-def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest everything that decides the figures of the command."""
-    return Provenance([_configuration(arguments)], ["golden", "verif/upsets"])
-
-
-def _found(*kept: Kept) -> str:
-    figures = [one.figures for one in kept]
-    cases = sum(one["cases"] for one in figures)
-    hung = sum(one[kind].get("hangs", 0) for one in figures for kind in set(KINDS))
-    flips = sum((Counter(one["upset"]) for one in figures), Counter())
-    most = max(one["most_wrong"] for one in figures)
-    return (
-        f"{cases:,} cases, {hung} never recovered; {flips.total():,} flipped bits: "
-        f"{flips['unseen']:,} did not show, {flips['StartScreen']:,} were repaired by the next StartScreen, "
-        f"{flips['commit']:,} by a commit; at most {most} frames were wrong"
-    )
-
-
-CHECKS = (
-    Check(
-        "bits flipped, resets, misuse of the bus while it draws, tiny, 3 rectangles", "each, seed with culling",
-        ["upsets-seed", "upsets-exact", "upsets-beam"], _found,
-    ),
-)  # fmt: skip
+def verilog(arguments: argparse.Namespace) -> str:
+    """Digest the Verilog that is disturbed."""
+    return verilog_digest(_configuration(arguments))
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -113,7 +91,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     }
     figures["most_wrong"] = max((result["wrong"] for result in results), default=0)
     figures["lost_sync"] = sum(result["lost_sync"] for result in results)
-    keep(arguments, figures, scope_of(configuration), provenance)
+    keep(arguments, figures, verilog)
     hangs = [
         f"case {one['case']}: {one['kind']}, {one['where']}, clock {one['clock']:.0f}: did not recover; "
         + repeated("verify upsets", arguments, cases=1, first=one["case"])
