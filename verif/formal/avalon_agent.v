@@ -21,7 +21,7 @@
 //   "avalon_interface.bus_mask[15] 0", "avalon_interface.commit_pending 0",
 //   "avalon_interface.progress_underrun unless bus_write", "avalon_interface.irq as irq_pending",
 //   "avalon_interface.avs_s0_readdata as read_data", "rect_mem.readback or old_surface",
-//   "rect_mem.next_live as latest_copies_pending", "rect_mem.latest_copies_pending as latest_copies_live",
+//   "rect_mem.latest_copies_live as latest_copies_pending", "rect_mem.latest_copies_pending as latest_copies_live",
 //   "rect_mem.written 1", "rect_slot.shadow_usable as usable", "scene_word.bus_commit or bus_write",
 //   "scene_word.bus_go_live or bus_commit"]
 
