@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
@@ -18,8 +18,10 @@ from raycaster.configuration import configure
 from raycaster.design import Design, ProcessorDesign
 from raycaster.fit.fixing import fix
 from raycaster.fpga.bitstream import write_project
-from raycaster.fpga.board import OpenBoard, board_names, find_board
+from raycaster.fpga.board import TOP, OpenBoard, QuartusBoard, board_names, find_board
 from raycaster.fpga.flows import FLOWS
+from raycaster.fpga.quartus import write_project as write_quartus_project
+from raycaster.scene import load_scene
 from raycaster.tools import run_yosys
 
 BOARDS = board_names(OpenBoard)
@@ -174,11 +176,26 @@ def netlist_of(board: OpenBoard, design: Design | ProcessorDesign, directory: Pa
     """Return the flattened top of a board's project, before its words are split into bits."""
     sources = [path.relative_to(directory) for path in write_project(board, design, directory)]
     synthesis = f"{FLOWS[board.flow].synthesis} -top {board.name} -run :coarse"
-    script = [*(f"read_verilog {source}" for source in sources), synthesis, "setattr -mod -unset keep_hierarchy *"]
-    script += ["proc", "flatten", "opt_expr", "opt_dff", "opt_clean"]
-    script += [f"select {board.name}", "write_json -selected top.json"]
-    run_yosys(directory, "top", script)
-    return json.loads((directory / "top.json").read_text())["modules"][board.name]
+    return flattened(board.name, [*(f"read_verilog {source}" for source in sources), synthesis], directory)
+
+
+def flattened(top: str, script: Sequence[str], directory: Path) -> Mapping[str, Any]:
+    """Return the flattened top after the commands of a script, before its words are split into bits."""
+    script = [*script, "setattr -mod -unset keep_hierarchy *", "proc", "flatten", "opt_expr", "opt_dff", "opt_clean"]
+    run_yosys(directory, "top", [*script, f"select {top}", "write_json -selected top.json"])
+    return json.loads((directory / "top.json").read_text())["modules"][top]
+
+
+def check_synchronisers(module: Mapping[str, Any], found: Netlist) -> None:
+    """Check that each synchroniser would be missed if its second register read what the first one reads."""
+    cells = module["cells"]
+    for first, (place, (second, there)) in {
+        one: (place, second) for (one, place), second in found.synchronisers
+    }.items():
+        inputs, outputs = cells[first]["connections"]["D"], cells[second]["connections"]["D"]
+        right, outputs[there] = outputs[there], inputs[place]
+        assert Netlist(module).faults, first
+        outputs[there] = right
 
 
 def design_on(board: OpenBoard, kind: str, directory: Path) -> Design | ProcessorDesign:
@@ -190,11 +207,25 @@ def design_on(board: OpenBoard, kind: str, directory: Path) -> Design | Processo
     return ProcessorDesign(write_program(SMALL_SCENE, config, directory), config)
 
 
+@pytest.mark.slow_sets(quick=["de10_lite"])
+@pytest.mark.parametrize("name", board_names(QuartusBoard))
+def test_every_crossing_of_a_quartus_board(tmp_path, name):
+    """Its only clock is the oscillator, so every crossing starts at an asynchronous input."""
+    board = find_board(name, QuartusBoard)
+    config = configure(**board.configuration | {"screen": "tiny", "engine": "exact", "rectangles": 3})
+    write_quartus_project(board, config, load_scene(SMALL_SCENE), tmp_path)
+    sources = [f"read_verilog {path.relative_to(tmp_path)}" for path in sorted(tmp_path.rglob("*.v"))]
+    module = flattened(TOP, [*sources, f"hierarchy -top {TOP}"], tmp_path)
+    found = Netlist(module)
+    assert found.faults == []
+    assert found.synchronisers and not found.named
+    check_synchronisers(module, found)
+
+
 @pytest.mark.slow_sets(quick=["ulx3s-scene"])
 @pytest.mark.parametrize("kind", ["scene", "game"])
 @pytest.mark.parametrize("name", BOARDS)
 def test_every_crossing_is_synchronised_or_named(tmp_path, name, kind):
-    """Each synchroniser is missed if its second register reads what the first one reads."""
     board = find_board(name, OpenBoard)
     (tmp_path / "project").mkdir()
     module = netlist_of(board, design_on(board, kind, tmp_path), tmp_path / "project")
@@ -203,11 +234,4 @@ def test_every_crossing_is_synchronised_or_named(tmp_path, name, kind):
     both_fire = kind == "game" and {"forward", "back"} <= board.inputs.keys()
     used = ("reset" in board.inputs, both_fire, board.video == "dvi")
     assert found.named == {one for one, there in zip(NAMED, used, strict=True) if there}
-    cells = module["cells"]
-    for first, (place, (second, there)) in {
-        one: (place, second) for (one, place), second in found.synchronisers
-    }.items():
-        inputs, outputs = cells[first]["connections"]["D"], cells[second]["connections"]["D"]
-        right, outputs[there] = outputs[there], inputs[place]
-        assert Netlist(module).faults, first
-        outputs[there] = right
+    check_synchronisers(module, found)
