@@ -13,7 +13,6 @@ from raycaster.docs.pages import PAGES, ROOT, need_clone
 from raycaster.errors import UserError
 from raycaster.options import CommandParser, outside_make
 from raycaster.output import Console, Table
-from raycaster.tools import find_program
 
 LEFT_OUT = {
     "make test": "it checks the commands itself",
@@ -30,13 +29,6 @@ def commands_of(pages: Iterable[Path]) -> list[str]:
     blocks = re.findall(r"^```sh\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
     lines = (line.partition(" #")[0].strip() for block in blocks for line in block.splitlines())
     return list(dict.fromkeys(filter(None, lines)))
-
-
-def left_out(command: str) -> str | None:
-    """Return the reason why a command is not run, or None if it is run."""
-    if command.startswith("make quartus") and find_program("quartus_sh") is None:
-        return "quartus_sh is not on the path"
-    return LEFT_OUT.get(command)
 
 
 def run(command: str, log: Path) -> tuple[int, float]:
@@ -73,7 +65,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     console, failed = Console(), 0
     table = Table("command", "seconds", "exit code", "log", texts=("log",))
     for number, command in enumerate(chosen):
-        if reason := left_out(command):
+        if reason := LEFT_OUT.get(command):
             table.add_row(command, "", "", f"left out: {reason}")
             continue
         log = arguments.output / f"{number:02}.log"

@@ -15,7 +15,7 @@ from conftest import SMALL_SCENE, run_tool
 from tcl import tcl_calls
 
 from raycaster.buses import BRIDGED, BUSES, OWN
-from raycaster.configuration import OPTIONS, Configuration, configure
+from raycaster.configuration import Configuration, configure
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM
 from raycaster.convert.take_home import FILE_LIST, PREFIX, TOP, WAIVERS, waivers
 from raycaster.convert.write import write_verilog
@@ -107,13 +107,6 @@ def check_component(config: Configuration, calls: list[list[str]], ports: Ports,
     assert files == 2 * [[name, "VERILOG", "PATH", name] for name in sources]
     hertz = config.screen_geometry.clock_hz
     assert ["set_interface_property", "clock", "clockRate", str(hertz)] in calls
-    options = {name: getattr(config, name) for name in OPTIONS} | (
-        {"fixed": config.fixed.scope} if config.fixed else {}
-    )
-    assert [call[1:] for call in calls if call[0] == "set_module_assignment"] == [
-        [f"embeddedsw.CMacro.{name.upper()}", f'"{value}"' if isinstance(value, str) else str(int(value))]
-        for name, value in options.items()
-    ]
 
 
 def test_each_module_has_the_prefix(tmp_path):
