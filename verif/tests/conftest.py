@@ -222,10 +222,10 @@ def refused(program: Callable[[list[str]], int | None], *words: str, cwd: Path =
     return done.stderr
 
 
-def refusal(directory: Path, *words: str, late: bool = False) -> str:
-    """Run a command in a directory, where it must fail with one line and change no file, and return the line.
+def refusal(directory: Path, *words: str) -> str:
+    """Run a command in a directory, where it must fail with one line and change no file; return all that it prints.
 
-    Work may have been announced if the mistake shows `late`.
+    Work may have been announced before the line.
     """
 
     def files() -> dict[Path, int]:
@@ -234,10 +234,11 @@ def refusal(directory: Path, *words: str, late: bool = False) -> str:
     before = files()
     done = called(*words, cwd=directory)
     *announced, error, end = (done.stdout + done.stderr).split("\n")
-    assert (done.returncode, bool(announced), end) == (2, late, ""), done
-    assert error.startswith("error: ") and error.isprintable(), error
+    assert (done.returncode, end) == (2, ""), done
+    assert error.startswith("error: ") and error.isprintable(), done
+    assert not any(line.startswith(("error", "Traceback")) for line in announced), done
     assert files() == before
-    return error.removeprefix("error: ")
+    return "\n".join([*announced, error])
 
 
 def run_tool(directory: Path, *command: str, **variables: str) -> subprocess.CompletedProcess[str]:
@@ -277,6 +278,14 @@ def stand_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, 
     monkeypatch.setattr("raycaster.tools._search_path", lambda: f"{tmp_path / 'bin'}:/usr/bin:/bin")
 
     return partial(write_script, tmp_path / "bin")
+
+
+def planted(path: Path, right: str, wrong: str) -> Path:
+    """Replace a text in a file by a faulty one. It must be there exactly once, so that no fault is lost unnoticed."""
+    text = path.read_bytes().decode()
+    assert text.count(right) == 1, f"{path.name} has {right!r} {text.count(right)} times"
+    path.write_bytes(text.replace(right, wrong).encode(errors="surrogateescape"))
+    return path
 
 
 def broken(files: Iterable[Path], directory: Path, module: str, right: str, wrong: str) -> list[Path]:

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Configurations: properties of all that options can make, the numbers that engines choose, and refused options."""
+"""Configurations: properties of all that options can make, and the numbers that engines choose.
+
+`mistakes/commands.txt` has options that an engine refuses.
+"""
 
 from __future__ import annotations
 
@@ -177,53 +180,3 @@ def test_every_row_is_set_up_in_its_blanking(place, rectangles, reflections):
 def test_more_to_set_up(options):
     """Features, a turned camera and two pixels per clock fit into the blanking too."""
     configure(engine="beam", **options)
-
-
-# Refused options -----------------------------------------------------------------------------------------------------
-
-TWICE = "^pixels: 2 per clock need one column per pixel of the monitor, "
-HALF = r"^rectangles: .* at two pixels per clock, the .*--pixels 1$"
-
-TOGETHER = (
-    "no engine has all of it: seed lacks a light and 180 rows of vga, exact lacks 180 rows of vga, beam lacks a light; "
-    "leave something out$"
-)
-"""Each engine says so of a lit picture with 180 rows: none sends its user to another that refuses, too."""
-
-
-@pytest.mark.parametrize(
-    ("engine", "options", "complaint"),
-    [
-        ("exact", {"fraction_bits": 4}, "^fraction_bits: the exact engine has none, not 4$"),
-        ("exact", {"rounding": "nearest"}, "^rounding: the exact engine does not round; leave out nearest$"),
-        ("exact", {"divider_bits": 2}, "^divider_bits: the exact engine has no divider; leave out 2$"),
-        ("exact", {"units": 2}, "^row budget: a group of 2 columns takes 36 cycles with 12 rectangles, 1 reflections "
-         "and 1 cycles per"),
-        ("exact", {"reflections": 0, "units": 2}, "leaves it 19 .less than 3200 cycles over 160 groups.; take more "
-         "units"),
-        ("exact", {"screen": "play"}, "^screen: the exact engine does not have play; choose --engine beam$"),
-        ("exact", {"rows": 180}, "^rows: exact has 240, .*, 60 rows on screen vga, not 180; choose --engine beam$"),
-        ("seed", {"scale": 2}, "^scale: the seed engine shows 240 rows at 1, not 2; choose --engine beam$"),
-        ("seed", {"pixels": 2}, "^pixels: the seed engine has 1 per clock, not 2; choose --engine beam$"),
-        ("exact", {"rows": 180, "light": True}, TOGETHER),
-        ("beam", {"rows": 180, "light": True}, TOGETHER),
-        ("seed", {"rows": 180, "light": True}, TOGETHER),
-        ("exact", {"scale": 2, "light": True}, "no engine has all of it: .*, exact lacks scale 2, beam lacks a light;"),
-        ("beam", {"pixels": 2, "light": True}, "exact lacks 2 pixels per clock, beam lacks a light; leave something"),
-        ("beam", {"light": True}, "^light: the beam engine casts no shadows, .*; choose --engine exact$"),
-        ("beam", {"units": 4}, "^units: the beam engine has one per pixel of a clock, 1 with --pixels 1, not 4$"),
-        ("beam", {"scale": 3}, "^scale: the beam engine shows 240 rows at 1 or 2, not 3$"),
-        ("beam", {"rows": 180, "scale": 8}, "^scale: the beam engine shows 180 rows at 1 or 2 or 3 or 4 or 6, not 8$"),
-        ("beam", {"fraction_bits": 1}, "^fraction_bits: the beam engine has none, not 1$"),
-        ("beam", {"pixels": 3}, "^pixels: expected 2 or less, got 3$"),
-        ("beam", {"screen": "play", "rectangles": 32, "reflections": 2, "turn": True},
-         "^rectangles: with 32 of them, 2 reflections .* is 31 cycles short of a line's"),
-        ("beam", {**PAIRS, "reflections": 2, "turn": True}, HALF),
-        ("beam", {"pixels": 2, "screen": "play", "reflections": 2}, HALF),
-        ("beam", {"pixels": 2, "scale": 1}, f"{TWICE}--scale 2, not 1$"),
-        ("beam", {"pixels": 2, "rows": 180, "scale": 3}, f"{TWICE}--scale 6, not 3$"),
-    ],
-)  # fmt: skip
-def test_options_that_an_engine_refuses(engine, options, complaint):
-    with pytest.raises(ConfigurationError, match=complaint):
-        configure(engine=engine, **options)

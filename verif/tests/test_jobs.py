@@ -112,6 +112,7 @@ def test_mended():
 """
 
 
+@pytest.mark.slow
 def test_all_is_resumed(tmp_path, monkeypatch, capsys):
     """Tests that passed run again only after a commit, or with another seed."""
     clone, ran = tmp_path / "clone", tmp_path / "ran"

@@ -141,7 +141,7 @@ def test_cell_without_model(tmp_path):
 def test_missing_yosys_gets_one_line(tmp_path, monkeypatch):
     monkeypatch.setattr(netlist, "find_spec", lambda name: None)
     error = refusal(tmp_path, "sim", "--gates", str(SMALL_SCENE))
-    assert error.startswith("Yosys is missing; it comes with the extra formal: ")
+    assert error.startswith("error: Yosys is missing; it comes with the extra formal: ")
 
 
 def test_default_design():

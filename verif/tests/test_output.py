@@ -78,7 +78,7 @@ def test_a_scene_file_has_a_name_for_its_outputs(tmp_path: Path, name: str, comm
     (tmp_path / "build" / "thesis").touch()
     word, *options = command.split()
     reason = "has a name that is not UTF-8" if "\udcff" in name else "expected a name"
-    assert refusal(tmp_path, word, name, *options).startswith(f"{printable(name)}: {reason}")
+    assert refusal(tmp_path, word, name, *options).startswith(f"error: {printable(name)}: {reason}")
 
 
 def test_text_is_shown_as_it_is():

@@ -143,23 +143,6 @@ def test_an_example_without_arguments_prints_its_usage(name: str):
     assert (done.returncode, done.stderr[:6], "Traceback" in done.stderr) == (2, "usage:", False)
 
 
-@pytest.mark.parametrize(
-    ("variable", "value", "words", "complaint"),
-    [
-        ("ENGINE", "beam", "verilog BUS=apb", "ENGINE=beam is in the environment, but make verilog takes only what "
-         "follows it; run make verilog BUS=apb ENGINE=beam, or unset ENGINE"),
-        ("SIM", "icarus", "sim", "run make sim SIM=icarus, or unset SIM"),
-        ("SCENE", "my boxes", "sim", "run make sim SCENE='my boxes', or unset SCENE"),
-    ],
-)  # fmt: skip
-def test_make_names_options_in_the_environment(variable, value, words, complaint, tmp_path, monkeypatch):
-    monkeypatch.setenv(FROM_MAKE, "1")
-    monkeypatch.setenv(variable, value)
-    done = called(*words.split(), cwd=tmp_path)
-    assert (done.returncode, complaint in done.stderr, done.stderr.count("\n")) == (2, True, 1)
-    assert not any(tmp_path.iterdir())
-
-
 def test_what_make_does_not_take_may_be_in_the_environment(tmp_path, monkeypatch):
     """Neither do options count that are given, or that a program started by this one inherits."""
     monkeypatch.setenv(FROM_MAKE, "1")

@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-import test_scene
 from conftest import ROOT
+from test_mistakes import MISTAKES, cases
 
 from raycaster.configuration import LOOKS
 from raycaster.scene import COMPLAINTS, Camera, Scene, SceneError, load_scene, packaged_scenes
@@ -161,14 +161,21 @@ def _agree(result: dict, expected: dict) -> bool:
     return result == expected
 
 
-MISTAKES = [test_scene.changed(old, new) for old, new, _ in test_scene.MISTAKES]
-"""Texts for which the shell's tests expect errors."""
+def _mistakes() -> Iterator[str]:
+    """Yield the texts, not too long, for which the shell's tests expect errors."""
+    good = (MISTAKES / "files" / NAME).read_text()
+    for edits, each, _ in cases(MISTAKES / "scenes.txt"):
+        if edits.startswith(NAME) and "((" not in edits and r"\udc" not in edits:
+            text = good
+            for _, right, wrong in each:
+                text = text.replace(right, wrong)
+            yield text
 
 
 def test_packaged_scenes_and_every_value_at_every_key(both):
     texts = [path.read_text(encoding="utf-8") for path in packaged_scenes().values()]
     kinds, needs = Counter(), set()
-    for text, result, expected in both([*texts, *MISTAKES, *_variants(), *_parts()]):
+    for text, result, expected in both([*texts, *_mistakes(), *_variants(), *_parts()]):
         assert _agree(result, expected), f"{text}\n{result}\n{expected}"
         kinds[result["error"] is None] += 1
         if result["scene"]:
