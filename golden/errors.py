@@ -23,9 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from raycaster.configuration import Rounding
-from raycaster.golden.exact import ExactModel
 from raycaster.golden.model import Trace
-from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import OTHER_AXES, Rectangles
 
 NEAR = 1e-9
@@ -58,30 +56,22 @@ class DepthErrors:
     """Number of coordinates whose error exceeds their bound."""
 
 
-def compare(
-    rectangles: Rectangles,
-    camera: Sequence[int],
-    slopes: np.ndarray,
-    reflections: int,
-    fraction_bits: int,
-    rounding: Rounding,
-) -> tuple[DepthErrors, ...]:
-    """Trace rays with both models and compare the results; see `depth_errors`.
+def condition(slopes: np.ndarray, perfect: Trace) -> float | None:
+    """Return a picture's greatest relative condition number, 1 or more, or None if no ray hits.
+
+    It is the relative change of a hit point per relative change of the slope D, for small changes. In P = E + D n / e,
+    a change of D moves P within the plane by (n / e) (I - D e_a^T / e) times the change. That matrix projects along D,
+    so its norm is |D| / |e|, and so is the condition number, relative to |P - E| = |D| n / e: one over the cosine of
+    the angle of incidence. Mirrors do not change it, as they change only signs.
 
     Args:
-        rectangles: the table.
-        camera: where the rays start, in world units.
-        slopes: int (rays, 3): slopes of the rays, not 0 along x.
-        reflections: 0 or more.
-        fraction_bits: F.
-        rounding: rounding of quotients.
+        slopes: int (rays, 3): slopes of the rays.
+        perfect: exact trace of the rays.
     """
-    dark = (0, 0, 0)
-    perfect, rounded = (
-        model.trace(rectangles, camera, dark, slopes, reflections)
-        for model in (ExactModel(), SeedModel(fraction_bits, rounding))
-    )
-    return depth_errors(rectangles, slopes, perfect, rounded.winners, rounded.points, fraction_bits, rounding)
+    length = np.sqrt((np.asarray(slopes, dtype=float) ** 2).sum(axis=1))
+    hits = zip(perfect.winners, perfect.denominators, strict=True)
+    found = np.concatenate([length[winner >= 0] / e[winner >= 0] for winner, e in hits])
+    return float(found.max()) if len(found) else None
 
 
 def depth_errors(
@@ -93,7 +83,7 @@ def depth_errors(
     fraction_bits: int,
     rounding: Rounding,
 ) -> tuple[DepthErrors, ...]:
-    """Compare hit points with the exact ones, and the errors with their bounds.
+    """Compare hit points of the seed engine with the exact ones, and the errors with their bounds.
 
     Args:
         rectangles: the table.

@@ -18,12 +18,11 @@ from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, add_keep_option, keep, kept_outcome
 from raycaster.output import Console
-from raycaster.report.arithmetics import arithmetic_chapter
 from raycaster.report.designs import design_chapter, find_designs, of_kept, to_keep
 from raycaster.report.errors import error_chapter, find_pictures
 from raycaster.report.extent import Extent, extent
 from raycaster.report.omissions import omission_chapter
-from raycaster.report.page import Chapter, Data, Section, Table, write
+from raycaster.report.page import Chapter, Section, write
 from raycaster.report.points import Sweep
 from raycaster.report.stability import stability_chapter
 from raycaster.sim.simulator import SimulationError
@@ -64,18 +63,16 @@ def write_report(directory: Path, what: Extent, sweep: Sweep, command_line: str)
             design_chapter(designs, pictures.all_shares),
             error_chapter(pictures),
             stability_chapter(what, sweep),
-            arithmetic_chapter(what, scenes, sweep),
             omission_chapter(what, scenes, sweep),
-            Chapter([_method(what, sweep, command_line)]),
+            Chapter([_method(what, command_line)]),
         ),
         Chapter(),
     )
     return write(page, directory), {"designs": to_keep(designs), "alarms": len(page.alarms)}
 
 
-def _method(what: Extent, sweep: Sweep, command_line: str) -> Section:
+def _method(what: Extent, command_line: str) -> Section:
     versions = ", ".join(f"{name} {importlib.metadata.version(name)}" for name in PACKAGES)
-    spent = [[kind, *of] for kind, of in sweep.spent().items()]
     when = datetime.datetime.now(datetime.UTC).date().isoformat()
     return Section(
         "Method",
@@ -90,9 +87,7 @@ def _method(what: Extent, sweep: Sweep, command_line: str) -> Section:
             "again only when these sources have changed.",
             "Cell counts are Yosys's for a Lattice ECP5, before placement. Simulations run the converted Verilog in "
             "Verilator.",
-            f"All points took {sum(seconds for _, _, seconds in spent) / 60:.0f} minutes of processor time.",
         ],
-        tables=[Table.of(Data("points", ("kind of point", "points", "processor time, s"), spent))],
     )
 
 

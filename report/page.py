@@ -71,8 +71,6 @@ class Section:
     sentences: Sequence[str] = ()
     plots: Sequence[Plot] = ()
     tables: Sequence[Table] = ()
-    files: Sequence[Data] = ()
-    """Data that is only written next to the page."""
 
 
 @dataclass(frozen=True)
@@ -94,8 +92,8 @@ class Chapter:
 def write(page: Chapter, directory: Path) -> Path:
     """Write the plots and the data, and `index.html`, which embeds all; return its path."""
     for section in page.sections:
-        for data in (*section.files, *(each.data for each in (*section.plots, *section.tables))):
-            data.write(directory)
+        for each in (*section.plots, *section.tables):
+            each.data.write(directory)
         for plot in section.plots:
             plots.save(plot.figure, directory / f"{plot.name}.svg")
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)

@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from raycaster.configuration import Rounding
 from raycaster.engines import EXACT, SEED
@@ -45,11 +45,6 @@ VERMILION, BLUE, ORANGE, GREY = SEED.colour, EXACT.colour, "#E69F00", "#7f7f7f"
 """Colours of Okabe and Ito, like the engines' colours, and a grey."""
 
 COLOURS = {"truncate": VERMILION, "nearest": BLUE}
-
-MARKS = {BLUE: "o", ORANGE: "s", VERMILION: "^", GREY: "D"}
-
-LEAST_RAYS = 1e-6
-"""Lower limit for drawing shares of all rays; smaller ones are drawn as 0."""
 
 LEAST_SHARE = 1e-5
 """Lower limit for drawing a picture's share of wrong pixels: below one pixel, so smaller shares are drawn as 0."""
@@ -138,18 +133,6 @@ def by_depth(by: Mapping[str, Mapping[str, Sequence[float]]], lines: Mapping[str
 
 
 @styled
-def pictures(rows: Sequence[Sequence[tuple[str, np.ndarray]]], height: float) -> Figure:
-    """Show rows of pictures with titles."""
-    figure, panels = new_figure(height * len(rows), len(rows), len(rows[0]))
-    for axes in panels.flat:
-        axes.axis("off")
-    for line, row in zip(panels, rows, strict=True):
-        for axes, (title, picture) in zip(line, row, strict=False):
-            axes.imshow(picture)
-            axes.set_title(title, fontsize=LABEL_POINTS)
-    return figure
-
-
 def wrong_by_scene(points: Sequence[Point]) -> Figure:
     """Show the wrong pixels of each point, a picture of the seed engine, three in a row."""
     shown = []
@@ -159,7 +142,14 @@ def wrong_by_scene(points: Sequence[Point]) -> Figure:
         share = count_wrong(drawn, right) / right[..., 0].size
         name = fill(name_of(point.what).replace("_", " "), 20)  # no wider than the picture
         shown.append((f"{name}: {share:.2%}", diff_picture(drawn, right)))
-    return pictures([shown[at : at + 3] for at in range(0, len(shown), 3)], 1.45)
+    rows = -(-len(shown) // 3)
+    figure, panels = new_figure(1.45 * rows, rows, 3)
+    for axes in panels.flat:
+        axes.axis("off")
+    for axes, (title, picture) in zip(panels.flat, shown, strict=False):
+        axes.imshow(picture)
+        axes.set_title(title, fontsize=LABEL_POINTS)
+    return figure
 
 
 # Stability and omissions ----------------------------------------------------------------------------------------------
@@ -178,46 +168,6 @@ def stiffness(cases: Mapping[str, tuple[float, float, float]], labelled: Sequenc
     _legend(figure)
     labels = [(*cases[name][:2], name) for name in labelled]
     label(axes, labels, conditions, errors, expand=(1.3, 1.8), force_text=(0.6, 1.2))
-    return figure
-
-
-@styled
-def by_arithmetic(titles: Mapping[str, str], panels: Sequence[tuple[str, Mapping[str, Mapping[str, float]]]]) -> Figure:
-    """Plot values by arithmetic.
-
-    Args:
-        titles: titles of the arithmetics, by name.
-        panels: for each panel, its title, and values by series and arithmetic: shares, or numbers of cells.
-    """
-    figure, [columns] = new_figure(3.3, 1, len(panels), sharey=True)
-    for axes, (title, series) in zip(columns, panels, strict=True):
-        for (colour, mark), (label, values) in zip(MARKS.items(), series.items(), strict=False):
-            places = [[*titles].index(name) for name in values]
-            shown = [max(one, LEAST_RAYS) for one in values.values()]
-            axes.plot(shown, places, mark, color=colour, label=label, ms=4.5, alpha=0.8)
-        axes.set_xlabel(title)
-        if max(shown) <= 1:
-            axes.set(xscale="log", xlim=(LEAST_RAYS / 2, 1))
-            axes.set_xticks([LEAST_RAYS, 1e-4, 1e-2, 1], ["0", "0.01%", "1%", ""])
-            axes.xaxis.set_minor_locator(NullLocator())
-        else:
-            axes.set_xlim(0, None)
-        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), frameon=False, handletextpad=0.1, labelspacing=0.2)
-    columns[0].set_yticks(range(len(titles)), titles.values())
-    columns[0].invert_yaxis()
-    return figure
-
-
-@styled
-def rule(by: Mapping[str, Sequence[tuple[float, float]]]) -> Figure:
-    """Plot relative forward errors against what condition and backward error allow, by arithmetic, and the limit."""
-    figure, [[axes]] = new_figure(3.6)
-    for (colour, mark), (name, places) in zip(MARKS.items(), by.items(), strict=True):
-        axes.plot(*zip(*places, strict=True), mark, color=colour, label=name, ms=3.5, alpha=0.7)
-    ends = [end(one for places in by.values() for place in places for one in place) for end in (min, max)]
-    axes.plot(ends, ends, color="black", linewidth=0.8)
-    axes.set(xscale="log", yscale="log", xlabel="condition number x backward error", ylabel="forward error")
-    _legend(figure, 4, handletextpad=0.1)
     return figure
 
 

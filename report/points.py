@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import argparse
 import json
-import resource
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
@@ -30,19 +29,16 @@ from raycaster.fixed import FixedScene
 from raycaster.fpga.area import with_units
 from raycaster.fpga.cells import FAMILIES, measure
 from raycaster.golden.catalogue import catalogue
-from raycaster.golden.errors import depth_errors
+from raycaster.golden.errors import condition, depth_errors
 from raycaster.golden.exact import ExactModel
-from raycaster.golden.measures import ARITHMETICS, ROUNDING_MODELS, measures, relative_conditions
 from raycaster.golden.model import Model, Trace
 from raycaster.golden.picture import wrong_pixels
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import SeedModel
-from raycaster.golden.watertight import suite
 from raycaster.golden.world import Rectangles
 from raycaster.jobs import Kept, positive, run_jobs
 from raycaster.options import add_configuration_options, as_options, given_options, run_command
 from raycaster.output import Console
-from raycaster.report.fixed_unit import fixed_unit, fixed_unit_cells
 from raycaster.scene import Scene, dump_scene, load_scene
 from raycaster.screens import SCREENS
 from raycaster.sim.job import Job
@@ -57,9 +53,6 @@ WORLD_ROWS = 120
 
 RECTANGLES = 12
 """Maximum number of rectangles in random worlds, and minimum in designs for any scene."""
-
-SUITE_SEED, AIMED_RAYS = 1, 16_000
-"""Seed of the rays at shared edges, and rays per table; rays with unsuitable slopes are left out."""
 
 GENERAL_REFLECTIONS, LEFT_UNITS = 2, 4
 """Reflections in the design from which parts are left out; and its units, always as many, so that a step's cells are
@@ -106,20 +99,15 @@ def _world(seed: int) -> Scene:
     return random_scene(seed, RECTANGLES, 0, ("materials", "patterns")).model_copy(update={"rows": WORLD_ROWS})
 
 
+@lru_cache(maxsize=2)
 def exact_trace(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
     """Return the slopes of a picture, int64 (rows, columns, 3), and its exact trace; cached for successive points.
 
     The screen is tiny or VGA; scenes of 180 rows, made for the beam engine, are drawn with 240.
     """
-    # Frozen models are hashable, but pydantic's types do not show it.
-    return _exact_trace(scene, screen, reflections)  # pyright: ignore[reportArgumentType]
-
-
-@lru_cache(maxsize=2)
-def _exact_trace(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
     rows = 48 if screen == "tiny" else scene.rows if (screen, scene.rows) in SCREENS else 240
     slopes = primary_slopes(SCREENS[screen, rows], scene.camera.basis)
-    return slopes, _traced(ExactModel(), scene, slopes.reshape(-1, 3), reflections, light=scene.light)
+    return slopes, _traced(ExactModel(), scene, slopes.reshape(-1, 3), reflections)
 
 
 # Points ---------------------------------------------------------------------------------------------------------------
@@ -133,7 +121,7 @@ class Point:
     """Name in `KINDS`."""
 
     what: str
-    """Source of the scene; for the kind cells a module, for leaks ARITHMETIC+TABLES."""
+    """Source of the scene; for the kind cells a module."""
 
     config: Configuration
     runs: int = 1
@@ -186,82 +174,35 @@ def _picture(point: Point) -> dict[str, Any]:
     """Compare the golden model's picture, under one arithmetic, with the exact picture.
 
     Returns:
-        Number and share of wrong pixels; errors by depth of reflection, as in `raycaster.golden.errors.DepthErrors`.
+        Number and share of wrong pixels; the picture's condition number; errors by depth of reflection, as in
+        `raycaster.golden.errors.DepthErrors`.
     """
     config, scene = point.config, point.scene
-    slopes, perfect = exact_trace(scene, config.screen, config.reflections)
-    model = SeedModel(config.fraction_bits, config.rounding)
-    rounded = _traced(model, scene, slopes.reshape(-1, 3), config.reflections)
+    # Frozen models are hashable, but pydantic's types do not show it.
+    slopes, perfect = exact_trace(scene, config.screen, config.reflections)  # pyright: ignore[reportArgumentType]
+    rays = slopes.reshape(-1, 3)
+    rounded = _traced(SeedModel(config.fraction_bits, config.rounding), scene, rays, config.reflections)
     wrong = wrong_pixels(rounded.colours, perfect.colours)
+    depths = depth_errors(
+        Rectangles.of_scene(scene), rays, perfect, rounded.winners, rounded.points, config.fraction_bits,
+        config.rounding,
+    )  # fmt: skip
     return {
         "pixels": wrong.size,
         "wrong": int(wrong.sum()),
         "wrong_share": float(wrong.mean()),
-        "depths": _depths(scene, slopes, perfect, rounded, rounded.points, config),
+        "condition": condition(rays, perfect),
+        "depths": [asdict(depth) for depth in depths],
     }
 
 
-def _traced(model: Model, scene: Scene, rays: np.ndarray, reflections: int, **options: Any) -> Trace:
-    rectangles = Rectangles.of_scene(scene)
-    return model.trace(rectangles, scene.camera.position, scene.background, rays, reflections, **options)
-
-
-def _depths(
-    scene: Scene, slopes: np.ndarray, perfect: Trace, traced: Trace, points: Sequence[np.ndarray], config: Configuration
-) -> list[dict[str, Any]]:
-    """Return the errors of hit points by depth, for rays that hit the same rectangles in both traces."""
-    found = depth_errors(
-        Rectangles.of_scene(scene), slopes.reshape(-1, 3), perfect, traced.winners, points, config.fraction_bits,
-        config.rounding,
-    )  # fmt: skip
-    return [asdict(depth) for depth in found]
-
-
-def _measures(point: Point) -> dict[str, Any]:
-    """Measure the errors of every arithmetic that can draw the scene, without its light.
-
-    Returns:
-        Number of pixels; median and maximum of the relative condition number over the hits of all depths, None without
-        hits; and by arithmetic, what `raycaster.golden.measures.measures` returns.
-    """
-    scene = point.scene.model_copy(update={"light": None})
-    slopes, perfect = exact_trace(scene, point.config.screen, point.config.reflections)
-    found = np.concatenate(relative_conditions(slopes.reshape(-1, 3), perfect))
-    found = found[~np.isnan(found)]
-    return {
-        "pixels": slopes[..., 0].size,
-        "median": float(np.median(found)) if len(found) else None,
-        "condition": float(np.max(found)) if len(found) else None,
-        "arithmetics": {
-            name: measures(model, scene, slopes, perfect, point.config.reflections)
-            for name, model in ROUNDING_MODELS.items()
-            if not scene.lacks(model.looks)
-        },
-    }
-
-
-def _leaks(point: Point) -> dict[str, Any]:
-    """Count the rays at shared edges, and those of them that leak, by kind of table.
-
-    Raises:
-        UserError: the arithmetic or the number of tables is malformed.
-    """
-    name, _, tables = point.what.partition("+")
-    if not (name in ARITHMETICS and tables.isdecimal()):
-        raise UserError(f"leaks: expected ARITHMETIC+TABLES, such as exact+20, got {point.what}")
-    model, found = ARITHMETICS[name], {}
-    for aimed in suite(SUITE_SEED, int(tables), AIMED_RAYS):
-        if not aimed.turned or "turn" in model.looks:
-            counts = found.setdefault(f"{aimed.kind}, {'turned' if aimed.turned else 'not turned'}", [0, 0])
-            leaks = aimed.leaks(model)
-            counts[0] += len(leaks)
-            counts[1] += int(leaks.sum())
-    return found
+def _traced(model: Model, scene: Scene, rays: np.ndarray, reflections: int) -> Trace:
+    return model.trace(Rectangles.of_scene(scene), scene.camera.position, scene.background, rays, reflections)
 
 
 def _cells(point: Point) -> dict[str, Any]:
-    """Count the ECP5 cells of a design, or of one of its modules or of `fixed_unit` on its own."""
-    return fixed_unit_cells() if point.what == fixed_unit.__name__ else _counted(point.config, point.what)
+    """Count the ECP5 cells of a design, or of one of its modules."""
+    return _counted(point.config, point.what)
 
 
 def _counted(config: Configuration, top: str = TOP) -> dict[str, Any]:
@@ -367,13 +308,11 @@ class Kind:
 
 
 _CORE = str(Path(raycaster.__path__[0]))
-_CELLS = "hdl", "rtl", _CORE, "convert", "fpga/cells.py", "fpga/hard_multiplier.v", "report/fixed_unit.py"
+_CELLS = "hdl", "rtl", _CORE, "convert", "fpga/cells.py", "fpga/hard_multiplier.v"
 _SIMULATIONS = "hdl", "rtl", _CORE, "golden", "convert", "sim"
 _PICTURES = "golden", _CORE, "verif/random_scenes.py"
 KINDS = {
     "picture": Kind(_picture, _PICTURES),
-    "measures": Kind(_measures, _PICTURES),
-    "leaks": Kind(_leaks, ("golden",), of_scene=False),
     "cells": Kind(_cells, _CELLS, of_scene=False),
     "left": Kind(_left, (*_CELLS, "golden", "fit")),
     "time": Kind(_time, _SIMULATIONS),
@@ -396,7 +335,6 @@ class Sweep:
     directory: Path
     make_executor: Callable[[], Executor]
     console: Console
-    _seconds: dict[Point, float] = field(default_factory=dict)
 
     def __call__(self, what: str, points: Sequence[Point]) -> dict[Point, dict[str, Any]]:
         """Return all results in the order of the points, computing only those that are not kept.
@@ -409,31 +347,12 @@ class Sweep:
             UserError: a worker was killed.
         """
         points = list(dict.fromkeys(points))
-        found = run_jobs(what, timed, points, self.make_executor, self.console, kept=Kept(self.place))
-        self._seconds.update((point, seconds) for point, (_, seconds) in zip(points, found, strict=True))
-        return {point: result for point, (result, _) in zip(points, found, strict=True)}
+        found = run_jobs(what, Point.compute, points, self.make_executor, self.console, kept=Kept(self.place))
+        return dict(zip(points, found, strict=True))
 
     def place(self, point: Point) -> Path:
         """Return the file of a point's result, whose name changes with everything that the result depends on."""
         return self.directory / point.kind / point.fingerprint
-
-    def spent(self) -> dict[str, tuple[int, float]]:
-        """Return the number of points and the processor seconds that they took, kept results included, by kind."""
-        kinds: dict[str, list[float]] = {}
-        for point, seconds in self._seconds.items():
-            kinds.setdefault(point.kind, []).append(seconds)
-        return {kind: (len(seconds), sum(seconds)) for kind, seconds in kinds.items()}
-
-
-def timed(point: Point) -> tuple[dict[str, Any], float]:
-    """Compute a point; return its result, and the seconds that this process and the programs it called computed."""
-    before = _computed()
-    return point.compute(), _computed() - before
-
-
-def _computed() -> float:
-    used = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    return sum(one.ru_utime + one.ru_stime for one in used)
 
 
 # Command line ---------------------------------------------------------------------------------------------------------
@@ -445,7 +364,7 @@ def parsed(argv: Sequence[str] | None = None) -> Point:
     parser.add_argument("kind", choices=KINDS)
     parser.add_argument(
         "what",
-        help=f"scene file, {CASE}NAME or {SEED}NUMBER; for the kind cells a module, for leaks ARITHMETIC+TABLES",
+        help=f"scene file, {CASE}NAME or {SEED}NUMBER; for the kind cells a module",
     )
     parser.add_argument("--runs", type=positive, default=1, help="frames of the kind time (default: %(default)s)")
     add_configuration_options(parser)

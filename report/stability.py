@@ -7,11 +7,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from raycaster.report import plots
-from raycaster.report.arithmetics import Results, case_measures
 from raycaster.report.errors import ROUNDINGS
 from raycaster.report.extent import CASE_REFLECTIONS, Extent
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
 from raycaster.report.points import CASE, Point, Sweep, name_of, picture
+
+Results = Mapping[Point, Mapping[str, Any]]
 
 OF_SEED = ("materials", "patterns")
 """Looks that the seed engine's cases may need."""
@@ -39,7 +40,7 @@ def stability_chapter(what: Extent, sweep: Sweep) -> Chapter:
         ],
     )  # fmt: skip
     pictures = {point: {**result, **_extremes(result["depths"])} for point, result in found.items()}
-    conditions = {name_of(one.what): of["condition"] for one, of in sweep("measures", case_measures(what)).items()}
+    conditions = {name_of(one.what): of["condition"] for one, of in found.items()}
     said, alarms, summary = _judged(pictures, conditions)
     strains, rows = {case.name: case.strain for case in what.cases}, []
     for point, one in pictures.items():
@@ -50,11 +51,11 @@ def stability_chapter(what: Extent, sweep: Sweep) -> Chapter:
     first = what.case_fractions[0]
     of_page = [row[: len(COLUMNS)] for row in rows if row[1] == first]
     text = (
-        "These scenes strain fixed-point arithmetic: grazed planes, corners, slits, points, facing mirrors, turned "
-        "cameras, and patterns hit on the borders of their cells. The relative condition number of a hit is the "
+        "These scenes strain fixed-point arithmetic: grazed planes, corners, slits, points, facing mirrors, and "
+        "patterns hit on the borders of their cells. The relative condition number of a hit is the "
         "relative change of the hit point per relative change of the slope, for small changes: one over the cosine of "
         "the angle of incidence, in mirrors too; the condition of a case is the maximum over all hits. Only the seed "
-        "engine rounds, and its camera cannot turn."
+        "engine rounds, so only its cases are shown."
     )
     drawn = [_stiffness(pictures, conditions, first), _flips(pictures)]
     table = Table(Data("catalogue", (*COLUMNS, "strains", "command"), rows), COLUMNS, of_page)
@@ -82,9 +83,9 @@ def _judged(pictures: Results, conditions: Mapping[str, float | None]) -> tuple[
     said = [
         f"The stiffest of {len(conditions)} cases is {stiffest}: a hit moves by up to {conditions[stiffest]:,.0f} "
         "times the relative error of its ray.",
-        f"{len(over)} of the seed engine's {len(pictures)} pictures, for {len({one.what for one in pictures})} cases, "
-        f"have a coordinate over its bound. The closest to its bound ({words(tightest)}) has {part:.2%} of it. The "
-        f"most wrong pixels ({words(most)}) are {pictures[most]['wrong']:,} of {pictures[most]['pixels']:,}.",
+        f"{len(over)} of the seed engine's {len(pictures)} pictures of these cases have a coordinate over its bound. "
+        f"The closest to its bound ({words(tightest)}) has {part:.2%} of it. The most wrong pixels ({words(most)}) are "
+        f"{pictures[most]['wrong']:,} of {pictures[most]['pixels']:,}.",
     ]
     summary = (
         f"In {len(conditions)} stiff and extreme cases, {len(over)} bounds are exceeded, and errors reach at most "

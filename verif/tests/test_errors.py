@@ -6,25 +6,31 @@ from __future__ import annotations
 from fractions import Fraction
 from itertools import product
 
+import numpy as np
 import pytest
 
 from raycaster.golden.catalogue import catalogue
-from raycaster.golden.errors import compare
+from raycaster.golden.errors import condition, depth_errors
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.random_world import random_camera, random_rectangles, random_slopes
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import SeedModel
-from raycaster.report import errors as report_errors
+from raycaster.golden.world import Rectangles
 from raycaster.report.points import CASE, picture
 from raycaster.screens import SCREENS
 
 SLOPES = primary_slopes(SCREENS["tiny", 48]).reshape(-1, 3)
 
 
+def traced(table, camera, slopes, reflections, fraction_bits=0, rounding="truncate"):
+    """Return the exact trace and the seed engine's."""
+    models = ExactModel(), SeedModel(fraction_bits, rounding)
+    return [model.trace(table, camera, (0, 0, 0), slopes, reflections) for model in models]
+
+
 def fraction_errors(table, camera, slope, reflections, fraction_bits, rounding):
     """Yield a ray's errors and bounds, as fractions, for each depth at which it hits what the exact ray hits."""
-    arguments = table, camera, (0, 0, 0), slope[None, :], reflections
-    perfect, rounded = (model.trace(*arguments) for model in (ExactModel(), SeedModel(fraction_bits, rounding)))
+    perfect, rounded = traced(table, camera, slope[None, :], reflections, fraction_bits, rounding)
     last_place = Fraction(1 if rounding == "truncate" else Fraction(1, 2), 1 << fraction_bits)
     bound = [Fraction(0)] * 3
     for depth in range(reflections + 1):
@@ -54,7 +60,8 @@ def test_errors_and_bounds_are_those_of_fractions(fraction_bits, rounding, refle
     for _ in range(20 if deep else 60):
         table = random_rectangles(random, **{"closed": True} if deep else {})
         camera, [slope] = random_camera(random, table), random_slopes(random, 1)
-        found = compare(table, camera, slope[None, :], reflections, fraction_bits, rounding)
+        perfect, drawn = traced(table, camera, slope[None, :], reflections, fraction_bits, rounding)
+        found = depth_errors(table, slope[None, :], perfect, drawn.winners, drawn.points, fraction_bits, rounding)
         for depth, error, bound in fraction_errors(table, camera, slope, reflections, fraction_bits, rounding):
             assert found[depth].worst == pytest.approx(float(max(error)), rel=1e-9 if deep else 1e-12)
             assert found[depth].bound == pytest.approx(float(max(bound)), rel=1e-9 if deep else 1e-12)
@@ -83,12 +90,16 @@ def test_the_known_case():
     assert result["depths"][0]["flips"] == 23_760
 
 
-def test_the_mean_error_is_over_rays():
-    """A picture of nine rays counts nine times as much as one of a single ray; one without rays does not count."""
-    pictures = [
-        {"depths": [{"rays": rays, "mean": mean, "worst": mean, "bound": 2.0, "tightest": mean / 2, "flips": 1}]}
-        for rays, mean in ((9, 1.0), (1, 0.0), (0, 0.0))
+def test_the_condition_of_rays_by_hand():
+    """A slope of (2, 1, 2) has length 3; on planes across x, y and z its condition numbers are 3/2, 3 and 3/2."""
+    planes = [((100, 0, 0), (100, 511, 511)), ((0, 100, 0), (511, 100, 511)), ((0, 0, 100), (511, 511, 100))]
+    slopes = np.array([[2, 1, 2], [-2, -1, -2]])
+    tables = [
+        Rectangles(np.array(corners), np.zeros((len(corners), 3), np.uint8), np.ones(len(corners), bool))
+        for corners in (*([plane] for plane in planes), planes[:2])
     ]
-    row = report_errors._depth_row(pictures, 0)
-    assert row["mean"] == pytest.approx(0.9)
-    assert (row["rays"], row["flips"], row["worst, median picture"], row["greatest error / bound"]) == (10, 3, 0.5, 0.5)
+    found = [condition(slopes, traced(table, (0, 0, 0), slopes, 0)[0]) for table in tables[:3]]
+    assert found == [1.5, 3, 1.5]
+    # Reflected in the first plane, the ray meets the second one at y = 100, x = 0.
+    assert condition(slopes, traced(tables[3], (0, 0, 0), slopes, 1)[0]) == 3
+    assert condition(slopes[1:], traced(tables[0], (0, 0, 0), slopes[1:], 0)[0]) is None
