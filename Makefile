@@ -10,7 +10,6 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream registers report docs results commands
 CHECKS := soak prove mutate coverage upsets dvi verify-all
-comma := ,
 # The program gets command-line variables exactly as typed: `value` and `unexport` keep make from expanding them, quotes
 # keep the shell from expanding them, and one shell per recipe preserves line breaks inside them.
 GIVEN := $(foreach name,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $(name)))),$(name)))
@@ -21,8 +20,7 @@ ARGUMENTS = $(foreach name,$(filter-out PYTHON3 PYTHON VENV,$(GIVEN)),$(call quo
 .SHELLFLAGS := -ec
 
 # Extras of pyproject.toml that a target needs in addition to the program itself.
-play game: EXTRAS := play
-web: EXTRAS := $(if $(filter-out 0,$(value MEASURE)),play$(comma)test,play)
+play game web: EXTRAS := play
 fit area: EXTRAS := fpga
 results: EXTRAS := fpga,docs
 bitstream: EXTRAS := fpga,play

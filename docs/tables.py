@@ -113,15 +113,6 @@ def _error_and_time(kept: Outcome) -> str:
     return table(["design", "LUT4", "ns per pixel", "ms per frame", "mean share of wrong pixels"], rows)
 
 
-def _page_speed(kept: Outcome) -> str:
-    """Frame times of the page's walk, compared with the same design compiled natively on the same machine."""
-    rows = [
-        [f"`{row['scene']}`", f"{row['browser_ms']:.0f} ms", f"{row['native_ms']:.0f} ms", f"{row['shown']:.1f}"]
-        for row in kept.figures["scenes"]
-    ]
-    return table(["scene", "in the browser", "native", "frames per second, each checked"], rows)
-
-
 SOAKED = "{scenes:,} scenes, {pixels:,} pixels, {wrong_vs_golden} wrong"
 COVERED = "lines {lines[0]:,} of {lines[1]:,}, conditions {conditions[0]:,} of {conditions[1]:,}"
 CHECKS = {
@@ -159,7 +150,6 @@ TABLES: Mapping[str, tuple[tuple[str, ...], Callable[..., str]]] = {
     "bitstreams": (("bitstream-*",), _bitstreams),
     "one_scene": (("fit",), _one_scene),
     "error_and_time": (("report",), _error_and_time),
-    "page_speed": (("web",), _page_speed),
     "checks": (tuple(CHECKS), _checks),
 }
 """Tables by the names of their markers in the pages: the files of the figures, and a function that makes Markdown."""

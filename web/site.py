@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 import base64
 import gzip
 import json
@@ -14,23 +13,19 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from raycaster.complaints import LONGEST_SHOWN, as_typed
+from raycaster.complaints import LONGEST_SHOWN
 from raycaster.configuration import LOOKS, MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
-from raycaster.convert.digest import verilog_digest
 from raycaster.engines import SEED
 from raycaster.errors import UserError
 from raycaster.jobs import processes, run_jobs
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.options import CommandParser, add_build_option
-from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, replaced
 from raycaster.play.walk import DRAG, STEEPEST, STEP, TURN, TURNS, WALKS
 from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
 from raycaster.scene import COMPLAINTS, PATTERN_KEYS, PATTERNS, Scene, packaged_scenes
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
-from raycaster.web.browser import browser_page
-from raycaster.web.speed import speed, speed_table
 from raycaster.web.taps import tap_facts
 from raycaster.web.wasm import golden_wasm, machine_wasm
 
@@ -189,24 +184,15 @@ def command_parser() -> CommandParser:
     parser = CommandParser("web", __doc__, "")
     add_build_option(parser)
     parser.add_argument("--output", type=Path, help="directory of the page (default: web/ in the build directory)")
-    parser.add_argument("--measure", action="store_true", help="measure frame times in Chromium and natively")
-    add_keep_option(parser)
     parser.add_argument(
         "--test", action="store_true", help="allow planting a wrong pixel by address, as in index.html?plant=100,50"
     )
     return parser
 
 
-def verilog(arguments: argparse.Namespace) -> str:
-    """Digest the Verilog of the design that walks."""
-    return verilog_digest(WALKS_MODELS[0].configuration)
-
-
 def main(argv: Sequence[str] | None = None) -> None:
     """Run the command."""
     arguments = command_parser().parse_args(argv)
-    if arguments.keep and not arguments.measure:
-        raise UserError(f"keep: there is nothing to keep without {as_typed('measure', True)}")
     console = Console()
     output = arguments.output or arguments.build / "web"
     try:
@@ -218,10 +204,3 @@ def main(argv: Sequence[str] | None = None) -> None:
         "web server.",
         soft_wrap=True,
     )
-    if arguments.measure:
-        model = WALKS_MODELS[0]
-        config = model.configuration
-        with browser_page() as page:
-            rows = speed(page, output, model.name, config, arguments.build, console)
-        console.print(speed_table(rows))
-        keep(arguments, {"bytes": size, "scenes": rows}, verilog)

@@ -30,6 +30,7 @@ from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.verilog_style import without_power_up
 from raycaster.options import outside_make, run_command
 from raycaster.output import MARK
+from raycaster.sim import ensure_tools
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import MODELS_VARIABLE, VERILATOR_FLAGS, build_model, convert, find_tool, run_bench
 from raycaster.verif import seeds
@@ -322,13 +323,20 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
     """Page of a browser that the tests of a file share; `said` has what scripts write on the console."""
-    from raycaster.web.browser import browser_page  # noqa: PLC0415 - only tests of pages need it
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - only tests of pages need it
 
-    with browser_page() as page:
+    chromium = ensure_tools.find("chromium")
+    if chromium is None:
+        raise ensure_tools.missing("chromium")
+    flags = ("--disable-gpu", "--disable-quic")
+    with sync_playwright() as playwright, playwright.chromium.launch(executable_path=chromium, args=flags) as browser:
+        page, errors = browser.new_page(), []
         page.set_default_timeout(60_000)
         page.said = []
         page.on("console", lambda message: page.said.append(message.text))
+        page.on("pageerror", lambda error: errors.append(str(error)))
         yield page
+        assert not errors, errors
 
 
 @pytest.fixture

@@ -24,7 +24,6 @@ from raycaster.scene import Camera, Scene, SceneError, load_scene, packaged_scen
 from raycaster.screens import SCREENS, Screen
 from raycaster.sw.firmware import build_firmware
 from raycaster.sw.play_script import DEMO, load
-from raycaster.web import speed
 from raycaster.web.site import MODELS, write_site
 
 WALK, TINY = (configure(**PAGE_MODELS[name]).screen_geometry for name in ("walk", "exact"))
@@ -218,14 +217,3 @@ def test_a_walk_with_a_light(walk):
         walk.select_option("#walk-scene", name)
         expected = golden_hash(packaged(name), screen=screen)
         walk.wait_for_function(f"RayCaster.state.walk.hash === '{expected}' && RayCaster.state.walk.wrong === 0")
-
-
-@pytest.mark.slow
-def test_frames_are_timed(page, whole_site, monkeypatch):
-    """Frame times in the browser and natively are positive numbers of milliseconds, and the table has them."""
-    monkeypatch.setattr(speed, "SCENES", ("boxes",))
-    monkeypatch.setattr(speed, "FRAMES", 2)
-    [row] = speed.speed(page, whole_site, MODELS[0].name, MODELS[0].configuration, BUILD, Console(quiet=True))
-    assert row["scene"] == "boxes"
-    assert min(value for name, value in row.items() if name != "scene") > 0
-    assert speed.speed_table([row]).row_count == 1

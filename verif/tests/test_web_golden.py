@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -28,10 +28,9 @@ from raycaster.sim.simulator import MODELS_VARIABLE
 from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.seeds import seed
 from raycaster.web import wasm
-from raycaster.web.browser import browser_page
-from raycaster.web.golden import Golden
 from raycaster.web.wasm import golden_wasm
 
+WORDS = 1024
 LIT, DARK_SIDE = -1, -2
 """Values of `Bounce::shadow`, besides the rectangle that shades."""
 
@@ -63,6 +62,39 @@ def design(rectangles: int = 12, **options: object) -> Configuration:
     """Return a design that need not be fast enough for its screen."""
     small = configure(screen="tiny", rectangles=1, reflections=0, allow_underrun=True, **options)
     return replace(small, rectangles=rectangles, reflections=2)
+
+
+class Golden:
+    """The compiled program as the page uses it.
+
+    Args:
+        call: calls an exported function, given its name and arguments.
+        read: reads the program's memory, given an address and a size.
+        write: writes the program's memory, given an address and bytes.
+    """
+
+    def __init__(
+        self, call: Callable[..., int], read: Callable[[int, int], bytes], write: Callable[[int, bytes], object]
+    ):
+        self.call, self.read, self.write = call, read, write
+
+    def load(self, words: Iterable[tuple[int, int]]) -> None:
+        """Replace the live words by these, with their word addresses."""
+        table = np.zeros(WORDS, dtype="<u4")
+        for address, word in words:
+            table[address] = word
+        self.write(self.call("golden_words"), table.tobytes())
+
+    def draw(self, config: Configuration, screen: Screen | None = None) -> np.ndarray:
+        """Draw the picture of a design, optionally on another screen."""
+        screen = screen or config.screen_geometry
+        self.call(
+            "golden_draw", config.facts.code, config.rectangles, config.materials, config.patterns, config.turn,
+            config.light, screen.columns, screen.rows, screen.horizon_row, screen.scale, config.fraction_bits,
+            config.rounding == "nearest", config.colour_bits,
+        )  # fmt: skip
+        data = self.read(self.call("golden_picture"), 3 * screen.columns * screen.rows)
+        return np.frombuffer(data, dtype=np.uint8).reshape(screen.rows, screen.columns, 3)
 
 
 @pytest.fixture(scope="module")
@@ -238,14 +270,3 @@ def test_compiles_once_without_errors(tmp_path, monkeypatch):
     monkeypatch.setattr(wasm, "find_spec", lambda name: None)
     with pytest.raises(UserError, match=r"^ziglang is missing; it comes with the extra play: .*$"):
         golden_wasm(tmp_path)
-
-
-def test_a_script_that_fails_is_noticed():
-    with pytest.raises(AssertionError, match="nowhere is not defined"), browser_page() as page:
-        page.set_content("<script>nowhere()</script>")
-
-
-def test_without_a_browser(monkeypatch):
-    monkeypatch.setattr("raycaster.web.browser.find", lambda tool: None)
-    with pytest.raises(UserError, match=r"^Chromium is missing[;,] .*$"), browser_page():
-        pass
