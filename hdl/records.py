@@ -6,6 +6,7 @@ Interfaces: groups of ports, of which each is a signal of its own.
 
 import inspect
 from collections.abc import Iterator, Mapping
+from copy import copy
 from typing import TYPE_CHECKING, Any, Self
 
 from myhdl import ConcatSignal
@@ -47,27 +48,37 @@ class Record:
     For a port `rect`, the word becomes the Verilog port `rect_word`, and a field that is read becomes a wire such as
     `rect_axis`. A record is driven by assigning the result of `joined` to `word`.
 
-    A field that a design lacks has no bits: it reads as 0, and its drivers are left out.
+    A field that a design lacks has no bits: it reads as 0, and its drivers are left out. A part is a further name for
+    some bits of the word, such as several fields together.
     """
 
     is_interface = True
 
-    def __init__(self, fields: Mapping[str, int], word: SignalType | None = None):
+    def __init__(
+        self,
+        fields: Mapping[str, int],
+        parts: Mapping[str, tuple[int, int]] | None = None,
+        word: SignalType | None = None,
+    ):
         """Lay out fields.
 
         Args:
             fields: widths in bits by name, `Signed` for two's complement, 0 for a field that the design lacks.
+            parts: lowest bit in the word and width in bits by name, 0 bits for a part that the design lacks.
             word: an existing signal for all fields together; a new one by default.
         """
-        width = sum(fields.values())
-        self.word = unsigned(width) if word is None else word
         self.layout = {name: bits for name, bits in fields.items() if bits}
-        self.lacking = [name for name, bits in fields.items() if not bits]
-        for name, bits in self.layout.items():
-            width -= bits
-            setattr(self, name, Field(self.word, name, width, bits))
-        for name in self.lacking:
-            setattr(self, name, tied(0, 1))
+        self._fields, self._parts = dict(fields), dict(parts or {})
+        self._connect(unsigned(sum(fields.values())) if word is None else word)
+
+    def _connect(self, word: SignalType) -> Self:
+        """Cut all fields and parts from a word."""
+        self.word = word
+        low = sum(self._fields.values())
+        places = {name: ((low := low - bits), bits) for name, bits in self._fields.items()} | self._parts
+        for name, (place, bits) in places.items():
+            setattr(self, name, Field(word, name, place, bits) if bits else tied(0, 1))
+        return self
 
     if TYPE_CHECKING:
 
@@ -75,12 +86,7 @@ class Record:
 
     def twin(self) -> Self:
         """Return a new record with the same layout."""
-        other = object.__new__(type(self))
-        Record.__init__(other, self._fields())
-        return other
-
-    def _fields(self) -> dict[str, int]:
-        return self.layout | dict.fromkeys(self.lacking, 0)
+        return copy(self)._connect(unsigned(len(self.word)))
 
     def has(self, name: str) -> bool:
         """Return True if a field has bits; otherwise the logic that computes it is left out."""
@@ -95,7 +101,8 @@ class Record:
         Raises:
             ValueError: a field is missing, unknown, or of another width.
         """
-        if strange := (set(self.layout) ^ set(parts)) - set(self.lacking):
+        lacking = self._fields.keys() - self.layout
+        if strange := (set(self.layout) ^ set(parts)) - lacking:
             raise ValueError(f"{type(self).__name__}: {', '.join(sorted(strange))}: missing, or no field")
         for name, bits in self.layout.items():
             given = parts[name]
@@ -112,8 +119,7 @@ class Record:
 
     def left_open(self) -> Self:
         """Leave the record unconnected, and return it."""
-        Record.__init__(self, self._fields(), Unconnected(initial(0, self.word)))
-        return self
+        return self._connect(Unconnected(initial(0, self.word)))
 
     def slice(self, name: str) -> tuple[int, int]:
         """Return the highest and the lowest bit of a field."""
@@ -124,13 +130,11 @@ class Record:
     def cut(self, words: SignalType, index: int) -> Self:
         """Make the record one of several packed side by side in words, the first in the lowest bits, and return it."""
         width = len(self.word)
-        Record.__init__(self, self._fields(), words((index + 1) * width, index * width))
-        return self
+        return self._connect(words((index + 1) * width, index * width))
 
     def tie(self, values: Mapping[str, int]) -> Self:
         """Tie the record to these constant values, and return it."""
-        Record.__init__(self, self._fields(), Tied(initial(self.pack(values), self.word)))
-        return self
+        return self._connect(Tied(initial(self.pack(values), self.word)))
 
 
 def port_signals(arguments: Mapping[str, Any]) -> dict[str, SignalType]:

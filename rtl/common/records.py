@@ -2,7 +2,7 @@
 """Records of the ray tracer; see `raycaster.hdl.records`."""
 
 from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, Configuration
-from raycaster.hdl.records import Field, Record
+from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
@@ -138,10 +138,9 @@ class Rect(Record):
 
     def __init__(self, coordinate_bits: int = COORDINATE_BITS, materials: bool = False, patterns: bool = False):
         bounds = dict.fromkeys(("u_low", "u_high", "v_low", "v_high"), coordinate_bits)
-        super().__init__(surface_fields(coordinate_bits, materials, patterns) | bounds)
-        below = sum(bounds.values())
-        self.surface = Field(self.word, "surface", below, len(self.word) - below)
-        self.look = Field(self.word, "look", below, sum(look_fields(materials, patterns).values()))
+        surface, below = surface_fields(coordinate_bits, materials, patterns), sum(bounds.values())
+        look = below, sum(look_fields(materials, patterns).values())
+        super().__init__(surface | bounds, {"surface": (below, sum(surface.values())), "look": look})
 
 
 def rect_of(config: Configuration) -> Rect:
@@ -265,15 +264,13 @@ class Fold(Record):
 
     def __init__(self, product_bits: int, walk_width: int, shift_bits: int, distance: int = DISTANCE_BITS):
         image = RoomImage(shift_bits).layout
-        super().__init__(
-            image
-            | {"mirror_back": 1}
+        others = (
+            {"mirror_back": 1}
             | dict.fromkeys(("p_x", "p_y", "p_z", "q_x", "q_y", "q_z"), Signed(product_bits))
             | dict.fromkeys(("border_x", "border_y", "border_z"), Signed(walk_width))
             | {"axis": AXIS_BITS, "distance": Signed(distance)}
         )
-        bits = sum(image.values())
-        self.image = Field(self.word, "image", len(self.word) - bits, bits)
+        super().__init__(image | others, {"image": (sum(others.values()), sum(image.values()))})
 
 
 def fold_of(config: Configuration) -> Fold:

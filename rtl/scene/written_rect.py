@@ -2,8 +2,8 @@
 """A rectangle as software writes it."""
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.records import Field, Record
-from raycaster.hdl.signals import bits_for, tied
+from raycaster.hdl.records import Record
+from raycaster.hdl.signals import bits_for
 from raycaster.registers import register_map
 from raycaster.rtl.common.widths import RGB_BITS, WORD_BITS
 
@@ -26,22 +26,21 @@ class WrittenRect(Record):
     """
 
     def __init__(self, materials: bool = False, patterns: bool = False):
-        words = dict.fromkeys(("corner_0", "corner_1", "surface"), WORD_BITS)
-        super().__init__(words | {"pattern": WORD_BITS * patterns})
-
-        def part(name: str, word: str, low: int, width: int) -> None:
-            at = self.slice(word)[1] + low if width else 0
-            setattr(self, name, Field(self.word, name, at, width) if width else tied(0, 1))
-
-        for number in range(2):
-            for axis, field in CORNER.fields.items():
-                part(f"{axis}_{number}", f"corner_{number}", field.lsb, field.width)
-        part("colour", "surface", SURFACE.fields["blue"].lsb, RGB_BITS)
-        part("enable", "surface", SURFACE.fields["enable"].lsb, 1)
-        part("mirror", "surface", SURFACE.fields["mirror"].lsb, SURFACE.fields["mirror"].width * materials)
-        part("colour_2", "pattern", PATTERN.fields["blue"].lsb, RGB_BITS * patterns)
+        words = dict.fromkeys(("corner_0", "corner_1", "surface"), WORD_BITS) | {"pattern": WORD_BITS * patterns}
+        lows = {name: sum(list(words.values())[place:]) for place, name in enumerate(words, 1)}
+        parts = {
+            f"{axis}_{number}": (lows[f"corner_{number}"] + field.lsb, field.width)
+            for number in range(2)
+            for axis, field in CORNER.fields.items()
+        }
+        mirror = SURFACE.fields["mirror"]
+        parts["colour"] = lows["surface"] + SURFACE.fields["blue"].lsb, RGB_BITS
+        parts["enable"] = lows["surface"] + SURFACE.fields["enable"].lsb, 1
+        parts["mirror"] = lows["surface"] + mirror.lsb, mirror.width * materials
+        parts["colour_2"] = PATTERN.fields["blue"].lsb, RGB_BITS * patterns
         for name in ("kind", "cell"):
-            part(name, "pattern", PATTERN.fields[name].lsb, PATTERN.fields[name].width * patterns)
+            parts[name] = PATTERN.fields[name].lsb, PATTERN.fields[name].width * patterns
+        super().__init__(words, parts)
 
 
 def written_of(config: Configuration) -> WrittenRect:

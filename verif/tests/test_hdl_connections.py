@@ -8,7 +8,9 @@ from hdl_blocks import Packed, converted, everything, everything_arguments, rand
 from myhdl import always, always_comb, block
 
 from raycaster.hdl.hierarchy import Port
+from raycaster.hdl.internals import bits_of
 from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.records import Record
 from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.sim.simulator import find_tool
 
@@ -93,3 +95,16 @@ def test_a_record_is_one_word(tmp_path, random):
         assert seen["kept_offset"] == kept
         assert (seen["sum"], seen["negative"]) == ((first + second) % 64, first < 0)
         kept = inputs["packed_offset"] if inputs["packed_flag"] else kept
+
+
+@pytest.mark.parametrize("made", [
+    lambda record: record.twin(), lambda record: record.left_open(), lambda record: record.tie({"low": 3}),
+    lambda record: record.cut(unsigned(16), 1),
+])  # fmt: skip
+def test_fields_and_parts_belong_to_the_word(made):
+    """Parts, as fields, are bits of a record's present word, also after it was tied, cut, left open or copied."""
+    record = Record({"high": 4, "absent": 0, "low": 4}, {"middle": (2, 4), "none": (0, 0)})
+    found = made(record)
+    places = {name: bits_of(getattr(found, name)) for name in ("high", "middle", "low")}
+    assert places == {"high": (found.word, 7, 4), "middle": (found.word, 5, 2), "low": (found.word, 3, 0)}
+    assert (len(found.none), int(found.none.val), int(found.absent.val)) == (1, 0, 0)
