@@ -8,7 +8,7 @@ endif
 PYTHON3 ?= python3
 VENV := .venv
 PYTHON := $(VENV)/bin/python
-COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream registers report docs results commands
+COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream registers report docs results
 CHECKS := soak prove mutate coverage upsets dvi verify-all
 # The program gets command-line variables exactly as typed: `value` and `unexport` keep make from expanding them, quotes
 # keep the shell from expanding them, and one shell per recipe preserves line breaks inside them.

@@ -45,7 +45,6 @@ COMMANDS: Mapping[str, Command] = {
     "report": Command("raycaster.report.__main__", "compare error, run time and size of designs", "report"),
     "docs": Command("raycaster.docs.__main__", "build the manual", "docs"),
     "results": Command("raycaster.docs.results", "measure the engines and write the manual's tables", "docs"),
-    "commands": Command("raycaster.docs.commands", "run every command in the manual"),
     "completion": Command("raycaster.cli.completion", "print shell completions for bash, zsh or tcsh"),
     "verify all": Command("raycaster.verif.everything", "run all tests, including the slow ones", "test"),
     "verify soak": Command("raycaster.verif.soak.soak", "compare random scenes at full size"),

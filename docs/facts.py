@@ -80,12 +80,12 @@ def seed_steps() -> str:
     return table(["from", "to", "cycles"], ([f"`{start}`", f"`{end}`", cycles] for start, end, cycles in lines))
 
 
-def exact_cycles(*, light: bool) -> str:
+def exact_cycles() -> str:
     """Table of the exact engine's fewest units and their cycles, by reflections and rectangles."""
     rows = []
     for reflections in range(3):
         for rectangles in (12, 32):
-            config = configure(engine="exact", reflections=reflections, rectangles=rectangles, light=light)
+            config = configure(engine="exact", reflections=reflections, rectangles=rectangles)
             rows.append([reflections, rectangles, config.units, config.group_cycles, config.group_budget])
     return table(
         ["reflections", "rectangles", "fewest units", "cycles per group, worst case", "budget per group"], rows
@@ -106,31 +106,6 @@ def beam_screens() -> str:
         rows.append([size, f"{screen.clock_hz / 1e6:g} MHz", beam.beam_latency(config), *setup, screen.beats.blank])
     head = ["rays, frame rate", "clock", "cycles, column to colour", "cycles, row set-up", "with a turning camera"]
     return table([*head, "blanking cycles before a row"], rows)
-
-
-def beam_latencies() -> str:
-    """Table of the blocks' shares in the beam engine's latency."""
-    config = configure(engine="beam")
-    turned, two_lanes = replace(config, turn=True), configure(engine="beam", rows=180, scale=6, pixels=2)
-    rows = [
-        ["`ray_tester`, `fold_tester`", "ray-rectangle test, all rectangles at once", beam.TESTER_LATENCY],
-        [
-            "`nearest_of_two`",
-            f"one round of comparisons; {config.rectangles} rectangles take {beam.rounds(config)} rounds",
-            beam.contest_latency(config),
-        ],
-        ["`ray_fold`", "fold of the ray at its mirror", beam.FOLD_LATENCY],
-        ["", "in total, from a ray to its reflection", beam.pass_latency(config)],
-        ["", "in total if the camera turns, because each `fold_tester` registers its fold", beam.pass_latency(turned)],
-        [
-            "",
-            "in total at 1920x1080 with two pixels per clock, because each `nearest_of_two` takes one more cycle too",
-            beam.pass_latency(two_lanes),
-        ],
-        ["`colour_blend`", "colour of the pixel", beam.blend_latency(config)],
-        ["`hit_cells`", "with patterns: cell in which the nearest rectangle is hit", beam.CELL_LATENCY],
-    ]
-    return table(["block", "function", "cycles"], rows)
 
 
 def register_overview() -> str:
@@ -199,10 +174,8 @@ def facts() -> dict[str, str]:
         "buses": buses(),
         "seed_cycles": seed_cycles(),
         "seed_steps": seed_steps(),
-        "exact_cycles": exact_cycles(light=False),
-        "light_cycles": exact_cycles(light=True),
+        "exact_cycles": exact_cycles(),
         "beam_screens": beam_screens(),
-        "beam_latencies": beam_latencies(),
         "register_overview": register_overview(),
         "registers": registers(),
         "units": str(default.units),
@@ -215,6 +188,9 @@ def facts() -> dict[str, str]:
         "turned_slope_bits": str(exact_slope_bits(configure(engine="exact", turn=True))),
         "pattern_latency": str(exact.PATTERN_LATENCY),
         "aim_cycles": str(exact.AIM_CYCLES),
+        "light_units": str(configure(engine="exact", light=True).units),
+        "beam_latency": str(beam.beam_latency(configure(engine="beam"))),
+        "beam_pass": str(beam.pass_latency(configure(engine="beam"))),
         "group": str(default.group_cycles),
         "budget": str(default.group_budget),
         "row": f"{default.screen_geometry.row_cycles:,}",

@@ -1,33 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""Tables of proofs and other checks per block, from the lists that the commands themselves use."""
+"""Tables of properties and lemmas, from the lists that `raycaster verify prove` uses."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
-from pathlib import Path
 
-from raycaster import rtl
 from raycaster.configuration import Configuration, configure
-from raycaster.docs.facts import table
+from raycaster.outcomes import table
 from raycaster.verif.formal.alone import FIXED_SCENE, TableAlone
 from raycaster.verif.formal.lemmas import LEMMAS
 from raycaster.verif.formal.properties import PROPERTIES
 from raycaster.verif.formal.prover import Property
-from raycaster.verif.mutation.mutate import expectations
-
-RTL = Path(rtl.__file__).parent
-TESTS = RTL.parent / "verif" / "tests"
-
-FOLDERS = ("exact", "engine", "beam", "seed", "cull", "scene", "bus", "video", "common", "dvi", "system")
-"""Folders that come first in the table of blocks; other folders follow."""
-
-UNGATED = "clock_gate"
-"""Module that no proof covers: proofs are about the Verilog for FPGAs, in which it is a wire."""
 
 
-def scale(of_it: Sequence[Property]) -> tuple[bool, str]:
-    """Return whether one of a property's designs has the full widths of a default design, and the sizes of all of them.
+def _scale(of_it: Sequence[Property]) -> str:
+    """Return the sizes of a property's designs, in words.
 
     The number of rectangles is a width if the property covers their index or their memory. The number of reflections is
     a range if the property uses it.
@@ -48,7 +35,7 @@ def scale(of_it: Sequence[Property]) -> tuple[bool, str]:
     for numbers, unit in ((narrow, "bits"), (tables + counts, "rectangles"), (mirrors, "reflections")):
         sizes += [f"{_values(numbers)} {unit}"] if numbers else []
     sizes += ["bounded waits"] if any("MOST_WAIT" in proof.parameters for proof in of_it) else []
-    return full, ", ".join(sizes)
+    return ", ".join(sizes)
 
 
 def _values(numbers: list[int]) -> str:
@@ -57,45 +44,6 @@ def _values(numbers: list[int]) -> str:
     if len(found) > 2 and found == list(range(found[0], found[-1] + 1)):
         return f"{found[0]} to {found[-1]}"
     return " and ".join(filter(None, [", ".join(map(str, found[:-1])), str(found[-1])]))
-
-
-def _proofs(module: str) -> tuple[str, str]:
-    """Return a module's properties at full width, and its properties for smaller designs."""
-    of_it = [proof for proof in PROPERTIES if module in proof.modules and module not in (*proof.cut, UNGATED)]
-    full, small = [], []
-    for name in dict.fromkeys(proof.name for proof in of_it):
-        of_name = [proof for proof in of_it if proof.name == name]
-        at_full_width, sizes = scale(of_name)
-        if at_full_width:
-            full.append(f"`{name}`{' and lemmas' if any(proof.any_product for proof in of_name) else ''}")
-        else:
-            small.append(f"`{name}` ({sizes})")
-    return ", ".join(full), ", ".join(small)
-
-
-def _tested() -> set[str]:
-    """Return the names of all tests, without the prefix `test_`."""
-    found = (re.findall(r"^def test_(\w+)\(", path.read_text(), re.MULTILINE) for path in TESTS.rglob("test_*.py"))
-    return set().union(*found)
-
-
-def proved_blocks() -> str:
-    """Table of the project's modules, with the checks of each one."""
-    mutated, tested = expectations(), _tested()
-    rows = []
-    others = {path.parent.name for path in RTL.glob("*/*.py")} - {*FOLDERS}
-    for folder in (*FOLDERS, *sorted(others)):
-        for path in sorted((RTL / folder).glob("*.py")):
-            module = path.stem
-            if not re.search(rf"^@block\ndef {module}\(", path.read_text(), re.MULTILINE):
-                continue
-            full, small = _proofs(module)
-            faults = f"`{module}`" if module in mutated else ""
-            replayed = {mutated[module].test.removeprefix("test_")} if module in mutated else set()
-            names = replayed | ({module} & tested)
-            tests = ", ".join(f"`{name}`" for name in sorted(names)) or "in frames"
-            rows.append([folder, f"`{module}`", full, small, faults, tests])
-    return table(["rtl/", "block", "proved at full width", "proved, smaller", "faults planted", "tests"], rows)
 
 
 def properties() -> str:
@@ -107,7 +55,7 @@ def properties() -> str:
         depths = sorted({proof.induction for proof in of_it})
         products = "any function" if any(proof.any_product for proof in of_it) else "bits"
         quick = sum(proof.small for proof in of_it)
-        rows.append([name, claim, scale(of_it)[1], products, len(of_it), quick, ", ".join(map(str, depths))])
+        rows.append([name, claim, _scale(of_it), products, len(of_it), quick, ", ".join(map(str, depths))])
     return table(["property", "claim", "proved for", "products", "designs", "quick", "induction depth"], rows)
 
 
@@ -132,4 +80,4 @@ def lemmas() -> str:
 
 def proofs() -> dict[str, str]:
     """Return all tables of this module, by the names in the pages' markers."""
-    return {"proved_blocks": proved_blocks(), "properties": properties(), "lemmas": lemmas(), "proof_counts": counts()}
+    return {"properties": properties(), "lemmas": lemmas(), "proof_counts": counts()}

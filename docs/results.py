@@ -14,6 +14,7 @@ from typing import Any
 from raycaster.configuration import configure
 from raycaster.convert.digest import verilog_digest
 from raycaster.docs.facts import facts
+from raycaster.docs.hdl import parts
 from raycaster.docs.pages import need_clone, render_all
 from raycaster.docs.proofs import proofs
 from raycaster.docs.tables import is_stale, outcomes, tables
@@ -94,5 +95,5 @@ def main(argv: Sequence[str] | None = None) -> None:
         arguments.keep = arguments.keep or RESULTS / "engines.json"
         figures = {"rectangles": configure().rectangles, "scenes": len(packaged_scenes(plain=True)), "designs": designs}
         keep(arguments, figures, verilog, "placing and routing")
-    for page in render_all(facts() | tables() | proofs()):
+    for page in render_all(facts() | tables() | proofs() | parts()):
         print(printable(f"written: {page}"))
