@@ -60,9 +60,8 @@ def _families(kept: Outcome) -> str:
     rows = []
     for name, title in titles.items():
         found = kept.figures["families"][name]
-        whole, parts = found["units"]["32"], [found[part]["elements"] for part in ("shared", "unit")]
-        rows.append([title, whole["elements"], *parts, whole["registers"], whole["multipliers"]])
-    return table(["family", "logic", "shared", "one unit", "registers", "multipliers"], rows)
+        rows.append([title, *(found[kind] for kind in ("elements", "registers", "multipliers"))])
+    return table(["family", "logic", "registers", "multipliers"], rows)
 
 
 def _features(kept: Outcome) -> str:

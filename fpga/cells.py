@@ -30,8 +30,6 @@ from raycaster.options import BUILD
 from raycaster.tools import run_yosys
 
 HARD_MULTIPLIER = Path(__file__).with_name("hard_multiplier.v")
-PINS_TOP = "registered_pins"
-"""Top module for placing and routing."""
 
 
 @dataclass(frozen=True)
@@ -213,20 +211,12 @@ def _sized(name: str) -> str:
     return name
 
 
-def synthesise(config: Configuration, family: Family, directory: Path, top: str) -> Mapping[str, Any]:
-    """Run Yosys in a directory, which is replaced; return the modules of the netlist, `netlist.json` there."""
-    return _netlist(directory, _prepare(config, family, directory, top))
-
-
 def _prepare(config: Configuration, family: Family, directory: Path, top: str, *options: str) -> list[str]:
     """Replace the directory's contents by Yosys's input, and return Yosys's script."""
     sources = [path.name for path in write_verilog(config, directory) if path.suffix == ".v"]
     for path in map(directory.joinpath, sources) if not family.power_up else ():
         path.write_text(without_power_up(path.read_text()))
     shutil.copy(HARD_MULTIPLIER, directory)
-    if top == PINS_TOP:
-        sources.append(f"{top}.v")
-        (directory / sources[-1]).write_text(registered_pins((directory / f"{TOP}.v").read_text()))
     return [
         *(f"read_verilog {source}" for source in sources),
         f"hierarchy -check -top {top}",
@@ -255,25 +245,3 @@ def _counted(directory: Path, script: Sequence[str], count: Callable[[Mapping[st
             file.write(counts)
         Path(file.name).replace(kept)
     return json.loads(kept.read_text())
-
-
-def registered_pins(module: str) -> str:
-    """Generate a top with the module between registers, so that timing includes the paths from and to its ports.
-
-    Args:
-        module: generated Verilog of the module; its clock output stays unconnected.
-    """
-    header = module[module.index(f"module {TOP} (") : module.index(");")]
-    found = re.findall(r"^ *(input|output) +(?:wire|reg) +(\[\d+:0\])? *(\w+),?$", header, re.MULTILINE)
-    data = [(direction, bits, name) for direction, bits, name in found if name not in ("clk", "vga_clk")]
-    pins = ["input wire clk"]
-    registers, connections = [], [".clk(clk)", ".vga_clk()"]
-    for direction, bits, name in data:
-        before, after = (name, f"{name}_inside") if direction == "input" else (f"{name}_inside", name)
-        pins.append(f"input wire {bits} {name}" if direction == "input" else f"output reg {bits} {name}")
-        registers.append(f"{'reg' if direction == 'input' else 'wire'} {bits} {name}_inside;")
-        registers.append(f"always @(posedge clk) {after} <= {before};")
-        connections.append(f".{name}({name}_inside)")
-    ports = ",\n    ".join(pins)
-    body = "\n".join([*registers, f"{TOP} module_i (", ",\n".join(connections), ");"])
-    return f"module {PINS_TOP} (\n    {ports}\n);\n{body}\nendmodule\n"

@@ -11,7 +11,7 @@ import json
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
@@ -26,7 +26,6 @@ from raycaster.digests import digest, sources_digest, tools_digest
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix, fixed_rectangle, with_camera
 from raycaster.fixed import FixedScene
-from raycaster.fpga.area import with_units
 from raycaster.fpga.cells import FAMILIES, measure
 from raycaster.golden.catalogue import catalogue
 from raycaster.golden.errors import condition, depth_errors
@@ -251,7 +250,7 @@ def _left(point: Point) -> dict[str, Any]:
     """
     steps = []
     for part, config in leaving_out(point.what, point.config.engine):
-        counted = with_units(config, LEFT_UNITS)
+        counted = replace(config, units=LEFT_UNITS, allow_underrun=True)
         figures = {"units": config.units, "cycles": predicted_cycles(counted)}
         steps.append({"left_out": part, **_counted(counted), **figures, "clock_mhz": required_mhz(counted)})
     return {"steps": steps}

@@ -13,9 +13,8 @@ from conftest import called
 
 from raycaster.configuration import configure
 from raycaster.convert.take_home import TOP
-from raycaster.convert.write import write_verilog
 from raycaster.fpga import area, cells, flows
-from raycaster.fpga.area import CHIPS, Chip, Model
+from raycaster.fpga.area import CHIPS
 from raycaster.fpga.cells import FAMILIES, Area, measure, measure_modules
 from raycaster.output import emptied
 
@@ -70,17 +69,6 @@ def test_wide_multipliers(family, multipliers, tmp_path):
     assert measure(wide, FAMILIES[family], tmp_path / "area", "ray_unit").multipliers == 2 * multipliers
 
 
-def test_the_model_predicts_linear_growth():
-    shared, unit = Area(100, 50, 120, 0, 2), Area(10, 5, 12, 2, 1)
-    model = Model.of((4, shared + unit * 4), (16, shared + unit * 16))
-    assert model == Model(shared, unit)
-    chip = Chip("board", "chip", "ecp5", elements=120 + 12 * 32, multipliers=64)
-    assert model.fitting(chip, 320) == 32
-    assert model.fitting(replace(chip, multipliers=63), 320) == 20
-    assert model.fitting(replace(chip, elements=119), 320) == 0
-    assert {one.family for one in CHIPS} == set(FAMILIES)
-
-
 FEATURES = {
     "seed": ["", "m", "p", "mp"],
     "exact": ["", "t", "m", "p", "l", "tmpl"],
@@ -112,70 +100,6 @@ def test_fixed_sets_of_designs(tmp_path, monkeypatch, capsys, names_for_digests)
     assert (shown.count("+71.0%"), shown.count("+31.0%")) == (1, 1)
 
 
-def test_each_pin_has_a_register(tmp_path):
-    """Every port except the clocks gets an input or output register of its width; Icarus accepts the result."""
-    config = configure(engine="beam", screen="tiny", rectangles=1, reflections=0, colour_bits=5, pixels=2)
-    files = write_verilog(config, tmp_path)
-    [module] = [path.read_text() for path in files if path.name == "ray_caster_module.v"]
-    top = tmp_path / "top.v"
-    text = cells.registered_pins(module)
-    top.write_text(text)
-    ports, outer = (re.findall(r"^ *(input|output) +\w+ +(\[\d+:0\])? *(\w+),?$", one, re.M) for one in (module, text))
-    assert {*outer} == {*ports} - {("output", "", "vga_clk")}
-    assert text.count("always") == len(outer) - 1
-    sources = [top, *(path for path in files if path.suffix == ".v")]
-    call = ["iverilog", "-g2005", "-Wall", "-Wno-timescale", "-s", "registered_pins", "-o", tmp_path / "top", *sources]
-    assert not subprocess.run(call, capture_output=True, text=True, check=True).stderr
-
-
-@pytest.fixture
-def nextpnr(monkeypatch):
-    """A function that replaces nextpnr by one that reaches these clocks in turn; returns the commands and time limits.
-
-    None stands for a run that takes too long.
-    """
-
-    def replace_by(*reached: float | None, code: int = 0) -> list[tuple[list[str], float]]:
-        made = []
-
-        def run_nextpnr(command, directory, timeout):
-            clock = reached[len(made)]
-            made.append((command, timeout))
-            if clock is None:
-                raise subprocess.TimeoutExpired(command, timeout)
-            cells = {"TRELLIS_COMB": {"used": 41_000, "available": 83_640}, "DCCA": {"used": 0, "available": 56}}
-            report = {"fmax": {"$glbnet$clk": {"achieved": clock, "constraint": 74.25}}, "utilization": cells}
-            (directory / "report.json").write_text(json.dumps(report))
-            return subprocess.CompletedProcess(command, code, "", "")
-
-        monkeypatch.setattr(flows, "run_program", run_nextpnr)
-        return made
-
-    return replace_by
-
-
-def test_placing_and_routing_alone(tmp_path, monkeypatch, capsys, names_for_digests, nextpnr):
-    """nextpnr's report is kept with its seed; a run with another seed has files of its own."""
-    calls = nextpnr(81.256, 81.256)
-    monkeypatch.setattr(area, "find_program", lambda name: name)
-    monkeypatch.setattr(area, "prepare_wasm", lambda name: None)
-    monkeypatch.setattr(area, "register_products", lambda netlist: 0)
-    monkeypatch.setattr(area, "synthesise", lambda config, family, directory, top: directory.mkdir(parents=True))
-    options = ("--engine", "beam", "--rows", "180", "--scale", "6", "--pixels", "2", "--route-only", "--seed", "3")
-    kept = tmp_path / "routed.json"
-    area.main([*options, "--output", str(tmp_path / "area"), "--keep", str(kept)])
-    area.main([*options, "--seed", "4", "--output", str(tmp_path / "area")])
-    command = calls[0][0]
-    assert [call[0][call[0].index("--seed") + 1] for call in calls] == ["3", "4"]
-    assert len([*(tmp_path / "area").glob("*/report.json")]) == 2
-    assert command[command.index("--freq") + 1] == "74.25"
-    assert json.loads(kept.read_text())["figures"] == {
-        "configuration": "beam-vga180-s6-u2-r12-m1-c8", "seed": 3, "clock_mhz": 74.25, "routed_mhz": 81.26,
-        "cells": {"TRELLIS_COMB": [41_000, 83_640]},
-    }  # fmt: skip
-    assert "81.26 MHz of 74.25, 41,000 of 83,640 TRELLIS_COMB" in " ".join(capsys.readouterr().out.split())
-
-
 @pytest.mark.parametrize(
     ("reached", "code", "kept", "runs"),
     [
@@ -187,9 +111,20 @@ def test_placing_and_routing_alone(tmp_path, monkeypatch, capsys, names_for_dige
     ],
     ids=["met", "met then", "missed", "no end", "failed"],
 )
-def test_a_missed_clock_is_routed_again(reached, code, kept, runs, tmp_path, nextpnr):
-    """A missed clock is routed once more; a second run that takes too long keeps the first result."""
-    made = nextpnr(*reached, code=code)
+def test_a_missed_clock_is_routed_again(reached, code, kept, runs, tmp_path, monkeypatch):
+    """A missed clock is routed once more; a second run that takes too long, as None, keeps the first result."""
+    made = []
+
+    def run_nextpnr(command, directory, timeout):
+        clock = reached[len(made)]
+        made.append((command, timeout))
+        if clock is None:
+            raise subprocess.TimeoutExpired(command, timeout)
+        report = {"fmax": {"$glbnet$clk": {"achieved": clock, "constraint": 74.25}}}
+        (directory / "report.json").write_text(json.dumps(report))
+        return subprocess.CompletedProcess(command, code, "", "")
+
+    monkeypatch.setattr(flows, "run_program", run_nextpnr)
     done = flows.place_and_route(["nextpnr", "--seed", "1"], ("--again",), tmp_path)
     assert done.returncode == code
     assert json.loads((tmp_path / "report.json").read_text())["fmax"]["$glbnet$clk"]["achieved"] == kept
@@ -199,15 +134,15 @@ def test_a_missed_clock_is_routed_again(reached, code, kept, runs, tmp_path, nex
 
 
 def test_the_command(tmp_path):
-    """Designs with fewer units are counted too; each unit has two multipliers."""
+    """Each unit has two multipliers; the share of a board's chip is printed."""
     options = ("--screen", "tiny", "--units", "2", "--rectangles", "1", "--reflections", "0", "--divider-bits", "1")
-    options += ("--allow-underrun", "--culling", "0", "--family", "ecp5")
+    options += ("--allow-underrun", "--culling", "0", "--family", "ecp5", "--keep", "area.json")
     done = called("area", *options, cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "area: usually 3 min, less with kept results\n")
-    [written] = tmp_path.glob("build/area/*-seed-1/area.json")
-    published = json.loads(written.read_text())["families"]["ecp5"]
-    assert set(published) == {"units", "shared", "unit"}
-    assert [area["multipliers"] for area in published["units"].values()] == [4, 2]
+    [counted] = json.loads((tmp_path / "area.json").read_text())["figures"]["families"].values()
+    assert counted["multipliers"] == 4
+    assert re.search(rf"ULX3S +LFE5U-85F +83,640 +{counted['elements']:,} +\d+% +4 of 156", done.stdout)
+    assert {chip.family for chip in CHIPS} == set(FAMILIES)
 
 
 def test_a_design_is_counted_once(tmp_path, monkeypatch):
