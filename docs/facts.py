@@ -12,7 +12,7 @@ from systemrdl.node import FieldNode, Node, RegNode
 
 from raycaster.buses import BUSES
 from raycaster.configuration import OPTIONS, configure
-from raycaster.docs.timing import CONFIGURATION, DIAGRAMS, kept, measured
+from raycaster.docs.timing import CONFIGURATION
 from raycaster.engines import ENGINES, beam, exact
 from raycaster.engines.engine import LOOK_NAMES, SETUP_LATENCY, Engine
 from raycaster.outcomes import table
@@ -71,13 +71,6 @@ def seed_cycles() -> str:
             fits = "yes" if config.group_cycles <= config.group_budget else "no"
             rows.append([reflections, bits, config.rect_cycles, config.group_cycles, config.group_budget, fits])
     return table([*head, "budget per group", "fits"], rows)
-
-
-def seed_steps() -> str:
-    """Table of cycles between the control's steps, as measured for the timing diagrams."""
-    [diagram] = [diagram for diagram in DIAGRAMS if diagram.name == "ray_control_and_ray_unit"]
-    lines = measured(diagram, kept(diagram.name))
-    return table(["from", "to", "cycles"], ([f"`{start}`", f"`{end}`", cycles] for start, end, cycles in lines))
 
 
 def exact_cycles() -> str:
@@ -173,7 +166,6 @@ def facts() -> dict[str, str]:
         "offers": offers(),
         "buses": buses(),
         "seed_cycles": seed_cycles(),
-        "seed_steps": seed_steps(),
         "exact_cycles": exact_cycles(),
         "beam_screens": beam_screens(),
         "register_overview": register_overview(),

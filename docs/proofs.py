@@ -59,15 +59,6 @@ def properties() -> str:
     return table(["property", "claim", "proved for", "products", "designs", "quick", "induction depth"], rows)
 
 
-def counts() -> str:
-    """Return the number of proofs, and of quick proofs, as part of a sentence."""
-    quick = sum(proof.small for proof in PROPERTIES)
-    return (
-        f"{len(PROPERTIES)} property proofs and {len(LEMMAS)} lemmas; "
-        f"{quick} of the property proofs and all lemmas are quick"
-    )
-
-
 def lemmas() -> str:
     """Table of all lemmas, in the form in which they are proved."""
     rows = []
@@ -80,4 +71,4 @@ def lemmas() -> str:
 
 def proofs() -> dict[str, str]:
     """Return all tables of this module, by the names in the pages' markers."""
-    return {"properties": properties(), "lemmas": lemmas(), "proof_counts": counts()}
+    return {"properties": properties(), "lemmas": lemmas()}

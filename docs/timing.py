@@ -320,10 +320,3 @@ def kept(name: str) -> str:
         return path.read_text()
     except OSError as error:
         raise UserError(f"{path}: cannot be read: {error.strerror}; {command_line('docs')} draws it") from None
-
-
-def measured(diagram: Diagram, source: str) -> list[tuple[str, str, int]]:
-    """Return the arrows of a drawing: start lane, end lane, and the cycles between them."""
-    edges = json.loads(source)["edge"]
-    arrows = zip(diagram.arrows, edges, strict=True)
-    return [(start, end, int(edge.split()[1])) for (start, _, end, _), edge in arrows]

@@ -6,7 +6,7 @@ from __future__ import annotations
 import csv
 import json
 import re
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
 from html import unescape
@@ -17,10 +17,9 @@ from rich.console import Console
 
 from raycaster.configuration import configure
 from raycaster.fpga.cells import Area
-from raycaster.golden import errors as golden_errors
 from raycaster.golden.catalogue import catalogue
 from raycaster.report import __main__ as report
-from raycaster.report import designs, plots, points, stability
+from raycaster.report import designs, plots, points
 from raycaster.report.extent import extent
 from raycaster.report.points import Point, Sweep, picture
 from raycaster.scene import find_scene
@@ -46,19 +45,6 @@ def test_a_command_repeats_its_point(capsys):
 
 def sweep_of(directory, make_executor=lambda: ProcessPoolExecutor(2)) -> Sweep:
     return Sweep(directory / "store", make_executor, Console(quiet=True))
-
-
-def test_a_bound_that_is_exceeded_is_a_red_line(tmp_path, monkeypatch):
-    """The bound is computed as if truncation were rounding to nearest."""
-    right = golden_errors._next_bound
-    monkeypatch.setattr(golden_errors, "_next_bound", lambda *arguments: right(*arguments[:-1], 1))
-    monkeypatch.setattr(stability, "FLIPPED", 1)
-    cases = [case for case in catalogue() if case.name.startswith(("box", "facing", "grazing"))]
-    sweep = sweep_of(tmp_path, lambda: ThreadPoolExecutor(1))
-    chapter = stability.stability_chapter(replace(extent(quick=True), cases=cases), sweep)
-    begins = "A bound is exceeded: box_20, F = 0, truncate. .venv/bin/python"
-    assert any(alarm.startswith(begins) for alarm in chapter.alarms)
-    assert not any("nearest" in alarm for alarm in chapter.alarms)
 
 
 @pytest.mark.slow
