@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Scene files in the browser: RayCasterScene.read returns the scene, or the same error line as `load_scene` in
-// raycaster/scene.py. Rules and messages come from there, through web/site.py; this file implements each kind
-// of rule. Needs vendor/smol-toml.js.
-//
-// Differences, because smol-toml is not Python's tomllib:
-// - The reason in brackets in a syntax error has smol-toml's wording. It reports unclosed strings and brackets, and
-//   repeated keys with a value of several lines, at their beginning; Python reports them at their end.
-// - It reads TOML 1.1: \e and \x in strings, times without seconds, line breaks and a trailing comma in inline tables.
-// - Keys that are whole numbers come first in their table. Fractions of a second are cut to milliseconds.
+// Scene files in the browser: RayCasterScene.read returns the scene, or an error line for the same place and with the
+// same expectation as `load_scene` in raycaster/scene.py. Rules and messages come from there, through web/site.py; this
+// file implements each kind of rule. Syntax errors have the line and the words of vendor/smol-toml.js.
 "use strict";
 
 const RayCasterScene = (() => {
@@ -29,7 +23,6 @@ const RayCasterScene = (() => {
     plane: ([first, second]) => first.some((coordinate, axis) => coordinate === second[axis]),
   };
 
-  const length = (text) => [...text].length; // In characters, as Python counts them.
   const fill = (template, values) => template.replace(/\{(\w+)\}/g, (_, name) => values[name]);
 
   // Resolve a part of the model's JSON schema: follow references, and take the value of "value or null".
@@ -38,35 +31,17 @@ const RayCasterScene = (() => {
     return rule.$ref ? schema.model.$defs[rule.$ref.split("/").pop()] : rule;
   }
 
-  // Format a float like Python: 2.0, 1e-05, 1e+16.
-  function floatText(value) {
-    const [digits, exponent] = value.toExponential().split("e");
-    if (Object.is(value, -0)) return "-0.0";
-    if (exponent < -4 || exponent >= 16) return `${digits}e${exponent[0]}${exponent.slice(1).padStart(2, "0")}`;
-    return Number.isInteger(value) ? `${value}.0` : `${value}`;
+  // A value as in a scene file, for the end of an error message; the page needs no more of a table.
+  function valueText(value) {
+    if (Array.isArray(value)) return `[${value.map(valueText).join(", ")}]`;
+    if (typeof value === "number" && Number.isInteger(value)) return `${value}.0`;
+    if (typeof value === "string" || value instanceof Date) return JSON.stringify(value);
+    return isTable(value) ? "a table" : `${value}`;
   }
 
-  // Format a date like Python's str: 2020-01-01 07:32:00+00:00.
-  const dateText = (date) =>
-    date.toISOString().replace("T", " ").replace(/Z$|-00:00$/, "+00:00").replace(".000", "").replace(/\.\d+/, "$&000");
-
-  // Format a value like Python's json.dumps.
-  function jsonText(value) {
-    if (typeof value === "number") return floatText(value);
-    if (value instanceof Date) return JSON.stringify(dateText(value));
-    if (Array.isArray(value)) return `[${value.map(jsonText).join(", ")}]`;
-    if (typeof value !== "object") return typeof value === "string" ? JSON.stringify(value) : `${value}`;
-    return `{${Object.entries(value).map(([key, item]) => `${JSON.stringify(key)}: ${jsonText(item)}`).join(", ")}}`;
-  }
-
-  // The given value, for the end of an error message.
   function given(value, schema) {
-    try {
-      const text = jsonText(value);
-      return length(text) <= schema.longest_shown ? `, not ${text}` : "";
-    } catch {
-      return ""; // Too deeply nested.
-    }
+    const text = valueText(value);
+    return text.length <= schema.longest_shown ? `, not ${text}` : "";
   }
 
   // The keys and indices of a mistake, with the rectangle's name: rect[0] ("floor") corners[1].
@@ -75,9 +50,7 @@ const RayCasterScene = (() => {
     let separator = "";
     place.forEach((key, depth) => {
       if (typeof key === "number") text += `[${key}]`;
-      else if (/^[A-Za-z0-9_-]+$/.test(key)) text += separator + key;
-      else text += separator + JSON.stringify(key).replace(/[^ -~]/g, (unit) =>
-        `\\u${unit.charCodeAt(0).toString(16).padStart(4, "0")}`);
+      else text += separator + (/^[A-Za-z0-9_-]+$/.test(key) ? key : JSON.stringify(key));
       separator = ".";
       if (depth === 1 && place[0] === "rect" && typeof contents.rect[key].name === "string") {
         text += ` (${JSON.stringify(contents.rect[key].name)})`;
@@ -129,24 +102,21 @@ const RayCasterScene = (() => {
   function syntaxComplaint(error, text, schema) {
     const [said] = error.message.replace("Invalid TOML document: ", "").split("\n");
     if (!error.line) return `is not TOML: ${said}`;
-    const lines = text.replace(/[ \t\n]+$/, "").split("\n");
-    const number = Math.min(error.line, lines.length);
-    const line = lines[number - 1].replace(/^[ \t]+|[ \t]+$/g, "");
-    const isShown = length(line) <= schema.longest_shown && !/(?! )[\p{C}\p{Z}]/u.test(line);
+    const line = text.split("\n")[error.line - 1].trim();
     // With [rect] in some places, a table is declared twice or is not a list.
     const reason = /^\[+rect\]+/.test(line) ? schema.complaints.heading : said;
-    return fill(schema.complaints.syntax, { number, line: isShown ? `: ${line}` : "", reason });
+    const shown = line.length <= schema.longest_shown ? `: ${line}` : "";
+    return fill(schema.complaints.syntax, { number: error.line, line: shown, reason });
   }
 
   const channels = (colour) =>
     typeof colour === "string" ? [1, 3, 5].map((digit) => parseInt(colour.slice(digit, digit + 2), 16)) : colour;
 
-  // Round like Python: halves to the even neighbour; + 0 turns -0 into 0.
-  const rounded = (value) => (Math.abs(value % 1) === 0.5 ? 2 * Math.round(value / 2) : Math.round(value)) + 0;
+  const rounded = (value) => Math.round(value) + 0; // + 0 turns -0 into 0.
 
   /**
    * Computes the camera's forward, right and up as in the registers: integers, with vectors of length 256. Equal to
-   * Camera.basis, unless the last bit of the browser's cosine is not that of Python and this changes a rounding.
+   * Camera.basis, except that halves are rounded up.
    * @param {number} yaw yaw in degrees; pitch and roll too
    * @returns {number[][]} three vectors of x, y, z
    */
