@@ -281,23 +281,22 @@ def stand_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, 
     return partial(write_script, tmp_path / "bin")
 
 
-def planted(path: Path, right: str, wrong: str) -> Path:
-    """Replace a text in a file by a faulty one. It must be there exactly once, so that no fault is lost unnoticed."""
-    text = path.read_bytes().decode()
-    assert text.count(right) == 1, f"{path.name} has {right!r} {text.count(right)} times"
-    path.write_bytes(text.replace(right, wrong).encode(errors="surrogateescape"))
-    return path
+def faulty(text: str, right: str, wrong: str) -> str:
+    """Return a text with a fault. The right text must be there exactly once, so that no fault is lost unnoticed."""
+    assert text.count(right) == 1, f"the text has {right!r} {text.count(right)} times"
+    return text.replace(right, wrong)
+
+
+def plant(path: Path, right: str, wrong: str) -> None:
+    """Plant a fault in a file, as in `faulty`."""
+    path.write_text(faulty(path.read_text(encoding="utf-8"), right, wrong), encoding="utf-8", errors="surrogateescape")
 
 
 def broken(files: Iterable[Path], directory: Path, module: str, right: str, wrong: str) -> list[Path]:
-    """Copy a design's Verilog with a fault in one module; the copy's directory must exist."""
-    copies = []
-    for source in files:
-        text = source.read_text()
-        assert source.stem != module or right in text, f"{module}.v has no {right!r}"
-        copies.append(directory / source.name)
-        copies[-1].write_text(text.replace(right, wrong) if source.stem == module else text)
-    assert module in {copy.stem for copy in copies}
+    """Copy a design's Verilog into a directory, which must exist, and plant a fault in one module."""
+    copies = [Path(shutil.copy(file, directory)) for file in files]
+    [path] = [copy for copy in copies if copy.stem == module]
+    plant(path, right, wrong)
     return copies
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import ROOT, SMALL_SCENE, refused
+from conftest import ROOT, SMALL_SCENE, plant, refused
 from engine_vectors import small_config
 from small_program import write_program
 
@@ -72,8 +72,7 @@ MODELS = ROOT / "verif" / "dvi" / "models.v"
 def test_a_wrong_description_is_refused(tmp_path, name, right, wrong, complaint):
     """One line gives the file and the mistake."""
     path = shutil.copytree(find_board(name, Board).directory, tmp_path / name) / "board.toml"
-    assert right in path.read_text()
-    path.write_text(path.read_text().replace(right, wrong))
+    plant(path, right, wrong)
     with pytest.raises(BoardError, match=rf"board\.toml: .*{re.escape(complaint)}") as error:
         load_board(path.parent)
     assert "\n" not in str(error.value)
@@ -134,8 +133,7 @@ def watched(
     if fault:
         name, right, wrong = fault
         [path] = [file for file in files if file.name == name]
-        assert right in path.read_text()
-        path.write_text(path.read_text().replace(right, wrong))
+        plant(path, right, wrong)
     return watch(board, files, design.configuration, frames, directory / "run", **{"simulator": "icarus"} | more)
 
 

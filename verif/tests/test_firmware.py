@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 import unicorn
-from conftest import called
+from conftest import called, faulty
 from elftools.elf.elffile import ELFFile
 from host_software import CONFIG, CORNER, FIRE, Registers, Session, compile_library
 from unicorn import riscv_const
@@ -195,7 +195,7 @@ def test_a_reset_starts_anew(firmware):
 def test_variables_start_with_their_values(tmp_path, right, wrong):
     """At power-up and after a reset; a fault in the start-up code shows at the latest after the reset."""
     start, program = tmp_path / START.name, tmp_path / "variables.c"
-    start.write_text(START.read_text().replace(right, wrong))
+    start.write_text(faulty(START.read_text(), right, wrong) if right else START.read_text())
     program.write_text(VARIABLES)
     built = build_firmware(tmp_path / "built", (start, program))
     assert built.sections[".data"] == built.sections["initial values of .data"] == 8
@@ -270,7 +270,7 @@ def test_a_missing_tool_is_one_line(tmp_path, monkeypatch, missing):
 def test_a_program_that_does_not_compile(tmp_path, variable, complaint):
     start, program, *others = SOURCES
     broken = tmp_path / "broken.c"
-    broken.write_text(program.read_text().replace("int main(void) {", f"int main(void) {{ {variable}"))
+    broken.write_text(faulty(program.read_text(), "int main(void) {", f"int main(void) {{ {variable}"))
     with pytest.raises(ToolError, match=rf"the compiler failed:\n.*{complaint}"):
         build_firmware(tmp_path / "output", (start, broken, *others))
     assert not (tmp_path / "output").exists()

@@ -10,7 +10,7 @@ from fractions import Fraction
 
 import pytest
 import z3
-from conftest import refused
+from conftest import faulty, refused
 
 from raycaster.errors import UserError
 from raycaster.verif.formal.faults import model_with_faults, outcome
@@ -69,7 +69,7 @@ def test_a_place_that_does_not_exist_is_refused(output):
 
 def test_a_name_that_the_hardware_does_not_have_is_refused(output, monkeypatch):
     """Otherwise the property would read an arbitrary value."""
-    text = HOST.text.replace("host.waiting", "host.pausing")
+    text = faulty(HOST.text, "(host.waiting ==", "(host.pausing ==")
     monkeypatch.setattr("raycaster.verif.formal.prover.source", lambda name: text)
     with pytest.raises(UserError, match=r"host\.pausing' is implicitly declared"):
         prove(HOST, output / "proof")
@@ -196,7 +196,7 @@ def changed(lemma: Lemma, right: str, wrong: str) -> Lemma:
     """Return the lemma with this fault in the one hypothesis or conclusion that has the right text."""
     texts = [*lemma.given, lemma.then]
     [place] = [index for index, text in enumerate(texts) if right in text]
-    texts[place] = texts[place].replace(right, wrong)
+    texts[place] = faulty(texts[place], right, wrong)
     return replace(lemma, given=tuple(texts[:-1]), then=texts[-1])
 
 

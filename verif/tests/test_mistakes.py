@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, planted, refusal
+from conftest import ROOT, plant, refusal
 
 from raycaster.options import FROM_MAKE
 from raycaster.sim.simulator import MODELS_VARIABLE
@@ -63,7 +63,7 @@ def test_a_mistake_gets_one_line(path: Path, tmp_path: Path):
     for number, (text, edits, command) in enumerate(cases(path)):
         directory = shutil.copytree(MISTAKES / "files", tmp_path / str(number))
         for name, right, wrong in edits:
-            planted(directory / name, right, wrong)
+            plant(directory / name, right, wrong)
         found.append(f"{text}$ {command}\n{said(command, directory)}\n")
         shutil.rmtree(directory)
     text = "\n".join(found)

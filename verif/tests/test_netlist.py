@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from conftest import BUILD, ROOT, SMALL_SCENE, TINY, called, random_values, refusal
+from conftest import BUILD, ROOT, SMALL_SCENE, TINY, called, plant, random_values, refusal
 from engine_vectors import check_ray_unit
 
 from raycaster.configuration import configure
@@ -246,7 +246,7 @@ def test_cells(placed, tmp_path, family):
             ("ecp5", "old-word", "MODE_A == 1 ? changed_a", "MODE_A ? changed_a"),
             ("gowin", "sign", "b_signed & b[WIDTH-1]", "b[WIDTH-1]"),
             ("gowin", "contents", "INIT[BYTE * place", "INIT[8 * place"),
-            ("gowin", "write-mode", ".MODE_A(WRITE_MODE)", ".MODE_A(0)"),
+            ("gowin", "write-mode", "(9), .WIDTH_A(BIT_WIDTH), .MODE_A(WRITE_MODE)", "(9), .WIDTH_A(BIT_WIDTH)"),
             ("gowin", "selection", "select_b === SELECT_B", "select_b !== SELECT_B"),
         )
     ],
@@ -255,8 +255,7 @@ def test_a_faulty_model_is_noticed(placed, tmp_path, family, right, wrong):
     netlist = placed(family, tmp_path)
     register_products(netlist)
     files = as_verilog(netlist, family)
-    assert right in files[0].read_text()
-    files[0].write_text(files[0].read_text().replace(right, wrong))
+    plant(files[0], right, wrong)
     assert unequal(files, tmp_path) > 0
 
 

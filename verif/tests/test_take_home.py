@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from conftest import SMALL_SCENE, run_tool
+from conftest import SMALL_SCENE, plant, run_tool
 from tcl import tcl_calls
 
 from raycaster.buses import BRIDGED, BUSES, OWN
@@ -186,7 +186,7 @@ BENCHED = {
 
 HORIZONTAL, BUS = "video_generator", "avalon_interface"
 BENCH_FAULTS = [
-    ("seed", HORIZONTAL, "x == 127", "x == 126", "a line of 159 pixels, 16 of them sync; expected 160 and 16"),
+    ("seed", HORIZONTAL, "if (x == 127)", "if (x == 126)", "a line of 159 pixels, 16 of them sync; expected 160"),
     ("seed", HORIZONTAL, "vga_hs = hs", "vga_hs = !hs", "a line of 160 pixels, 144 of them sync"),
     ("seed", HORIZONTAL, "vga_hs = hs", "vga_hs = 1", "0 lines, expected 3 or more"),
     ("seed", BUS, "32'h52415943", "32'h52415944", "address 0 reads 52415944, expected 52415943"),
@@ -209,8 +209,7 @@ def test_the_bench_as_it_is_has_one_verdict(name, module, right, wrong, complain
     write_verilog(BENCHED[name], tmp_path / "rtl", PREFIX)
     if module:
         path = tmp_path / "rtl" / f"{PREFIX}{module}.v"
-        assert right in path.read_text()
-        path.write_text(path.read_text().replace(right, wrong))
+        plant(path, right, wrong)
     run_tool(tmp_path / "rtl", "iverilog", "-g2005", "-o", "a.out", "-y", ".", "bench/smoke_bench.v")
     done = run_tool(tmp_path / "rtl", "vvp", "-N", "a.out")
     verdicts = re.findall("^(?:PASS|FAIL)", done.stdout, re.M)
@@ -251,7 +250,7 @@ def test_fusesoc_simulates(tool, bus, tmp_path):
 @pytest.mark.parametrize(
     ("target", "file", "right", "wrong", "complaint"),
     [
-        ("sim", "video_generator.v", "x == 127", "x == 126", "FAIL: "),
+        ("sim", "video_generator.v", "if (x == 127)", "if (x == 126)", "FAIL: "),
         ("lint", "module.vlt", "lint_off -rule UNUSEDSIGNAL", "// ", "%Warning-UNUSEDSIGNAL"),
         ("lint", "module.vlt", "lint_off", "lint_off", ""),
     ],

@@ -11,7 +11,7 @@ from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import pytest
-from conftest import run_tool
+from conftest import plant, run_tool
 
 from raycaster.configuration import Configuration, configure
 from raycaster.design import ProcessorDesign
@@ -339,8 +339,7 @@ FAULTS = [
 )
 def test_a_fault_is_noticed(case, file, right, wrong, project, monkeypatch, tmp_path):
     copy = shutil.copytree(HERE, tmp_path / "fpga", ignore=shutil.ignore_patterns("*.py", "__pycache__"))
-    assert right in (copy / file).read_text()
-    (copy / file).write_text((copy / file).read_text().replace(right, wrong))
+    plant(copy / file, right, wrong)
     for module in (board_module, bitstream):
         monkeypatch.setattr(module, "HERE", copy)
     monkeypatch.setattr(quartus, "HELPER", copy / quartus.HELPER.name)
@@ -479,6 +478,5 @@ def test_a_broken_pll_does_not_lock(board, right, wrong, project):
     case = next(case for case in PLLS if case.board == board)
     files = project(case)
     [path] = [path for path in files if path.name == "board_pll.v"]
-    assert right in path.read_text()
-    path.write_text(path.read_text().replace(right, wrong))
+    plant(path, right, wrong)
     assert clocks_made(case, files) is None
