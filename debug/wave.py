@@ -41,8 +41,8 @@ def rows_of(text: str | None, row: int, count: int) -> tuple[int, int]:
     return first, last
 
 
-def write_view(path: Path, design: Design, ray: Ray) -> list[Path]:
-    """Write files for GTKWave and Surfer next to a waveform of a pixel's row, with the cursor at the pixel's ray."""
+def write_view(path: Path, design: Design, ray: Ray) -> Path:
+    """Write files for GTKWave next to a waveform of a pixel's row, with the cursor at the pixel's ray."""
     waves = Waves(path)
     description = description_of(design.configuration, ray.unit)
     samples = waves.sample(description.controls())
@@ -53,17 +53,12 @@ def write_view(path: Path, design: Design, ray: Ray) -> list[Path]:
     return write_files(waves, view)
 
 
-def viewer(waves: Path, files: list[Path]) -> list[str] | None:
+def viewer(waves: Path, view: Path) -> list[str] | None:
     """Return the command that shows a waveform; None if there is no viewer or no screen."""
     if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         return None
-    return next((command for command in commands(waves, files) if shutil.which(command[0])), None)
-
-
-def commands(waves: Path, files: list[Path]) -> list[list[str]]:
-    """List commands that open a waveform: GTKWave, and Surfer, which finds state names where it is started."""
-    gtkwave, surfer = files
-    return [["gtkwave", str(gtkwave.resolve())], ["surfer", "--command-file", surfer.name, waves.name]]
+    commands = ["gtkwave", str(view)], ["surfer", str(waves)]
+    return next((command for command in commands if shutil.which(command[0])), None)
 
 
 def command_parser() -> CommandParser:
@@ -88,15 +83,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     waves = build_and_record(arguments, design, rows, target, console)
     if waves is None:
         return 1
-    files = write_view(waves, design, ray)
+    view = write_view(waves, design, ray)
     console.print(f"{waves}: rows {rows[0]} to {rows[1]}, {waves.stat().st_size / 1e6:.1f} MB")
-    command = None if arguments.no_viewer else viewer(waves, files)
+    command = None if arguments.no_viewer else viewer(waves.resolve(), view)
     if command:
         with (waves.parent / "viewer.log").open("w") as log:
             subprocess.Popen(command, cwd=waves.parent, stdout=log, stderr=log, start_new_session=True)
         console.print(f"opened in {command[0]}")
         return 0
-    _, surfer = commands(waves, files)
-    console.print(f"to open it: gtkwave {shlex.quote(str(waves.parent / files[0].name))}")
-    console.print(f"        or: cd {shlex.quote(str(waves.parent))} && {shlex.join(surfer)}")
+    console.print(f"to open it: gtkwave {shlex.quote(str(waves.parent / view.name))}")
     return 0

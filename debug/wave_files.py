@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Write viewers' files for a waveform: GTKWave's save file, Surfer's command file, and state names for both."""
+"""Write a viewer's files for a waveform: GTKWave's save file, and the names of states for it."""
 
 from __future__ import annotations
 
@@ -16,13 +16,9 @@ from raycaster.debug.waves import RANGE, Waves
 from raycaster.errors import UserError
 
 GTKWAVE_FILE = "view.gtkw"
-SURFER_FILE = "view.sucl"
 
 FORMATS = {"": "dec", "signed": "signed", "hex": "hex"}
 """GTKWave's names of number formats, by the suffix of a signal's name."""
-
-SURFER_FORMATS = {"": "Unsigned", "signed": "Signed", "hex": "Hexadecimal"}
-"""Surfer's names of number formats, by the same suffix."""
 
 WINDOW_SIZE = 1500, 1000
 NAMES_WIDTH = 360
@@ -31,9 +27,6 @@ WAVES_WIDTH = 1050
 
 PIXELS_A_FRAME = 200
 """Pixels that span 2^zoom units of time in GTKWave."""
-
-SURFER_DIGITS = str.maketrans("0123456789abcdef", "abcdefghijklmnop")
-"""The sixteen digits with which Surfer numbers its items, by the usual ones."""
 
 
 @dataclass(frozen=True)
@@ -53,24 +46,20 @@ class View:
     end_ns: float
 
 
-def write_files(waves: Waves, view: View) -> list[Path]:
-    """Write all files next to a waveform, each atomically; return the files for GTKWave and Surfer.
+def write_files(waves: Waves, view: View) -> Path:
+    """Write all files next to a waveform, each atomically; return the one that GTKWave opens.
 
     Raises:
         UserError: the waveform lacks a signal.
     """
     directory = waves.path.resolve().parent
     filters = {place: directory / f"{'.'.join(place)}.txt" for place in view.states}
-    # Both before the first file is written, as a signal may be missing.
-    gtkwave, surfer = _gtkwave(waves, view, filters), _surfer(waves, view)
+    # Before the first file is written, as a signal may be missing.
+    text = _gtkwave(waves, view, filters)
     for place, names in view.states.items():
-        title, bits = ".".join(place), max(names).bit_length()
+        bits = max(names).bit_length()
         _write(filters[place], make_translation_filter(list(names.items()), "bin", bits) + "\n")
-        lines = [f"Name = {title}", f"Bits = {bits}", *(f"{value} {name}" for value, name in names.items())]
-        mappings = directory / ".surfer" / "mappings"
-        mappings.mkdir(parents=True, exist_ok=True)
-        _write(mappings / f"{title}.txt", "\n".join(lines) + "\n")
-    return [_write(directory / GTKWAVE_FILE, gtkwave), _write(directory / SURFER_FILE, surfer)]
+    return _write(directory / GTKWAVE_FILE, text)
 
 
 def _write(path: Path, text: str) -> Path:
@@ -123,24 +112,6 @@ def _gtkwave(waves: Waves, view: View, filters: Mapping[tuple[str, str], Path]) 
                 else:
                     save.trace(whole, label, datafmt=FORMATS[kind] if width > 1 else "bin")
     return text.getvalue()
-
-
-def _surfer(waves: Waves, view: View) -> str:
-    lines, count = [], 0
-    for group, names in view.groups.items():
-        lines.append(f"divider_add {group.replace(' ', '_')}")
-        count += 1
-        for name in names:
-            signal, kind, place = _parts(name)
-            # Surfer has no names for ranges of bits, so it shows the whole signal.
-            signal, kind = (waves.bits(signal)[0], "hex") if RANGE.fullmatch(signal) else (signal, kind)
-            lines.append(f"variable_add {signal}")
-            shown = ".".join(place) if place in view.states else SURFER_FORMATS[kind]
-            if waves.width(signal) > 1:
-                item = f"{count:x}".translate(SURFER_DIGITS)
-                lines += [f"item_focus {item}", f"item_set_format {shown}", "item_unfocus"]
-            count += 1
-    return "\n".join([*lines, f"cursor_set {waves.ticks(view.cursor_ns)}", "goto_cursor"]) + "\n"
 
 
 def _labels(signals: Sequence[str]) -> list[str]:
