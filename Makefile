@@ -8,8 +8,8 @@ endif
 PYTHON3 ?= python3
 VENV := .venv
 PYTHON := $(VENV)/bin/python
-COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream registers report docs results
-CHECKS := soak prove mutate coverage upsets dvi verify-all
+COMMANDS := sim scenes play game web wave trace verilog fit area quartus bitstream registers report docs
+CHECKS := soak prove mutate coverage upsets verify-all
 # The program gets command-line variables exactly as typed: `value` and `unexport` keep make from expanding them, quotes
 # keep the shell from expanding them, and one shell per recipe preserves line breaks inside them.
 GIVEN := $(foreach name,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $(name)))),$(name)))
@@ -22,7 +22,6 @@ ARGUMENTS = $(foreach name,$(filter-out PYTHON3 PYTHON VENV,$(GIVEN)),$(call quo
 # Extras of pyproject.toml that a target needs in addition to the program itself.
 play game web: EXTRAS := play
 fit area: EXTRAS := fpga
-results: EXTRAS := fpga,docs
 bitstream: EXTRAS := fpga,play
 report: EXTRAS := fpga,report
 docs: EXTRAS := docs,play
@@ -32,7 +31,7 @@ sim: EXTRAS := $(if $(filter-out 0,$(value GATES)),formal)
 mutate: EXTRAS := formal,test
 lint test verify-all: EXTRAS := formal,fpga,report,coverage,play,docs,test
 
-.PHONY: help $(COMMANDS) $(CHECKS) flash test lint clean
+.PHONY: help $(COMMANDS) $(CHECKS) test lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -42,9 +41,6 @@ help:
 $(COMMANDS) $(CHECKS): $(VENV)/base
 	@$(call install,$(EXTRAS))
 	@RAYCASTER_FROM_MAKE=1 $(PYTHON) -m raycaster.cli $(if $(filter $@,$(CHECKS)),verify )$(patsubst verify-%,%,$@) $(ARGUMENTS)
-
-flash:
-	@$(MAKE) --no-print-directory bitstream FLASH=1
 
 lint test: $(VENV)/base
 	@$(call install,$(EXTRAS))

@@ -56,8 +56,8 @@ COMMANDS: Mapping[str, Command] = {
 }
 
 
-NOT_OF_MAKE = ("completion",)
-"""Commands that are not make targets: shells complete make's targets already."""
+NOT_OF_MAKE = ("completion", "options", "results", "verify dvi")
+"""Commands that are not make targets; `.venv/bin/raycaster` runs them."""
 
 
 def overview(*, from_make: bool = False) -> str:
@@ -66,8 +66,9 @@ def overview(*, from_make: bool = False) -> str:
     Args:
         from_make: list make's targets, in make's notation.
     """
-    checks = [name.removeprefix("verify ") for name in COMMANDS if name.startswith("verify ")]
-    others = [name for name in COMMANDS if not name.startswith("verify ") and not (from_make and name in NOT_OF_MAKE)]
+    chosen = [name for name in COMMANDS if not (from_make and name in NOT_OF_MAKE)]
+    checks = [name.removeprefix("verify ") for name in chosen if name.startswith("verify ")]
+    others = [name for name in chosen if not name.startswith("verify ")]
     lines = [(name, COMMANDS[name].purpose) for name in others]
     if from_make:
         head = "make sim SCENE=mirror_room ENGINE=beam PYTHON3=python3.12"
@@ -87,7 +88,7 @@ def verify_overview() -> str:
     return "\n".join(["raycaster verify soak --seeds 10", "", *lines])
 
 
-OF_MAKE_ALONE = ("help", "test", "lint", "clean", "flash")
+OF_MAKE_ALONE = ("help", "test", "lint", "clean")
 """Make targets that are not commands of the program."""
 
 
@@ -100,7 +101,8 @@ def unknown_command(asked: str, *, from_make: bool = False) -> str:
     """
     names = {word: name for name in COMMANDS for word in (name, name.removeprefix("verify "))}
     if from_make:
-        names = {word: word for word in (*names, *OF_MAKE_ALONE) if word not in NOT_OF_MAKE and " " not in word}
+        names = {word: word for word in (*names, *OF_MAKE_ALONE) if " " not in word}
+        names |= {name.split()[-1]: f".venv/bin/raycaster {name}" for name in NOT_OF_MAKE}
         names |= {"all": "verify-all", "verify-all": "verify-all", "verify": "verify-all"}
     near = difflib.get_close_matches(asked, names, 1)
     meant = f" (did you mean {names[near[0]]}?)" if near else ""
