@@ -2,7 +2,7 @@
 # The entry point from a clone. Each target sets up the environment it needs and calls the program `raycaster` with
 # make's variables unchanged: `make sim ENGINE=beam SCENE=boxes` runs `raycaster sim ENGINE=beam SCENE=boxes`.
 
-ifeq ($(wildcard cli/commands.py),)
+ifeq ($(wildcard raycaster/cli/commands.py),)
 $(error error: make must run in the folder of $(MAKEFILE_LIST); use make -C with that folder)
 endif
 PYTHON3 ?= python3
@@ -36,7 +36,7 @@ lint test verify-all: EXTRAS := formal,fpga,report,coverage,play,docs,test
 .DELETE_ON_ERROR:
 
 help:
-	@$(PYTHON3) cli/commands.py
+	@$(PYTHON3) raycaster/cli/commands.py
 
 $(COMMANDS) $(CHECKS): $(VENV)/base
 	@$(call install,$(EXTRAS))
@@ -52,7 +52,7 @@ lint test: $(VENV)/base
 
 # Unknown targets.
 .DEFAULT:
-	@$(PYTHON3) cli/commands.py $@
+	@$(PYTHON3) raycaster/cli/commands.py $@
 
 clean:
 	rm -rf build .pytest_cache .ruff_cache

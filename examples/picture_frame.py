@@ -3,7 +3,7 @@
 
 After reset a small Avalon-MM host writes one scene from a ROM, and the monitor shows it. To get Verilog, run:
 
-    python examples/picture_frame.py scenes/boxes.toml build/picture_frame
+    python examples/picture_frame.py raycaster/scenes/boxes.toml build/picture_frame
 """
 
 from __future__ import annotations

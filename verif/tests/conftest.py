@@ -261,7 +261,7 @@ def installed(directory: Path) -> None:
     """Let make find its files in a directory, and take everything for installed there."""
     for name in ("Makefile", "pyproject.toml", "constraints.txt"):
         shutil.copy(ROOT / name, directory)
-    (directory / "cli").symlink_to(ROOT / "cli")
+    (directory / "raycaster").symlink_to(ROOT / "raycaster")
     (directory / ".venv").mkdir()
     for name in ("base", *re.findall(r": EXTRAS := ([\w,]+)$", (ROOT / "Makefile").read_text(), re.MULTILINE)):
         (directory / ".venv" / name).touch()

@@ -29,7 +29,7 @@ from raycaster.verif.expected import check_cycles
 from raycaster.verif.seeds import seed
 
 EVERYTHING = dict.fromkeys(EXACT.looks, True)
-FULL_SCENE = ROOT / "scenes" / "mirror_room.toml"
+FULL_SCENE = ROOT / "raycaster" / "scenes" / "mirror_room.toml"
 DESIGNS = {
     **{engine: ("verilator", configure(engine=engine, screen="tiny"), FULL_SCENE) for engine in ENGINES},
     "small": ("verilator", TINY["exact"], SMALL_SCENE),

@@ -61,7 +61,7 @@ def test_picture_frame(name, bus, reset, vga, tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(ROOT / "examples")
     config = replace(TINY["seed"], bus=bus)
     screen = config.screen_geometry
-    scene = load_scene(ROOT / "scenes" / "boxes.toml")
+    scene = load_scene(ROOT / "raycaster" / "scenes" / "boxes.toml")
     scene = scene.model_copy(update={"rect": scene.rect[:3]})
     files = import_module(name).convert(scene, config, tmp_path / "verilog")
     names = {name: name for name in ("r", "g", "b", "vs", "blank_n")} | {"hs": "", "sync_n": "", "clk": ""}
@@ -124,7 +124,7 @@ def test_cocotb_picture(simulator, fault, waves, tmp_path):
     assert (output / waves).is_file()
     assert (output / "diff.png").is_file() == bool(fault)
     # The fault turns the golden picture into its negative.
-    scene, screen = load_scene(ROOT / "scenes" / "boxes.toml"), TINY["exact"].screen_geometry
+    scene, screen = load_scene(ROOT / "raycaster" / "scenes" / "boxes.toml"), TINY["exact"].screen_geometry
     corner = ExactModel().render(scene, screen)[0, 0]
     colour, negative = bytes(corner).hex(), bytes(255 - corner).hex()
     first = f"12,288 of 12,288 pixels are wrong; the first, at column 0 of line 0, is #{colour}, expected #{negative}"

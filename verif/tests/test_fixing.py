@@ -35,7 +35,7 @@ from raycaster.sim.simulator import SimulationError
 from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.seeds import seed
 
-SCENES = ROOT / "scenes"
+SCENES = ROOT / "raycaster" / "scenes"
 BOXES = SCENES / "boxes.toml"
 NOTHING = '[camera]\nposition = [9, 9, 9]\n[[rect]]\ncorners = [[0, 0, 0], [0, 9, 9]]\ncolour = "#ffffff"\n'
 """Scene of a rectangle that nobody sees."""

@@ -31,7 +31,7 @@ def test_make_refuses_a_folder_before_it_installs(tmp_path: Path, name: str):
     (clone / "raycaster").mkdir(parents=True)
     for file in ("Makefile", "pyproject.toml", "constraints.txt", "raycaster/places.py"):
         shutil.copy(ROOT / file, clone / file)
-    (clone / "cli").symlink_to(ROOT / "cli")
+    (clone / "raycaster" / "cli").symlink_to(ROOT / "raycaster" / "cli")
     done = make("sim", f"PYTHON3={sys.executable}", cwd=clone)
     error = done.stderr.splitlines()[0]
     assert error.startswith("error: ") and f"the path has {CLONES[name]}" in error.replace("a byte that is ", "")

@@ -64,10 +64,10 @@ def test_prints(words: str, printed: str, capsys):
 def test_make_help_installs_nothing(tmp_path: Path):
     """It works in a clone without an environment and leaves the clone unchanged."""
     (tmp_path / "Makefile").write_text((ROOT / "Makefile").read_text())
-    (tmp_path / "cli").symlink_to(ROOT / "cli")
+    (tmp_path / "raycaster").symlink_to(ROOT / "raycaster")
     done = make("help", f"PYTHON3={sys.executable} -I -S", cwd=tmp_path)
     assert done.stdout == overview(from_make=True) + "\n", done.stderr
-    assert {path.name for path in tmp_path.iterdir()} == {"Makefile", "cli"}
+    assert {path.name for path in tmp_path.iterdir()} == {"Makefile", "raycaster"}
 
 
 COMPLETE = """

@@ -69,6 +69,9 @@ def test_version():
     assert re.findall(r"^## \[(\d+\.\d+)\]", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[0] == numbers
 
 
+LINKED = "docs", "fpga", "golden", "rtl", "sw", "verif"
+"""Folders at the top that are linked into the package."""
+
 ORDERS = {"": MAY_IMPORT, "rtl": MAY_IMPORT_IN_RTL}
 
 
@@ -86,14 +89,20 @@ def imported_folders(path: Path, inside: str) -> set[str]:
     return {name if name in ORDERS[inside] else inside or "raycaster" for name in found}
 
 
+def files_of(folder: str, inside: str = "") -> list[Path]:
+    """Return the Python files of a folder, without those of the folders in it that are listed, and without tests."""
+    home = ROOT / "raycaster" / inside / ("" if folder == "raycaster" else folder)
+    others = {ROOT / "raycaster" / name for name in MAY_IMPORT} if folder == "raycaster" else {home / "tests"}
+    return [path for path in home.rglob("*.py") if not others & {*path.parents}]
+
+
 @pytest.mark.parametrize(("inside", "folder"), [(inside, folder) for inside in ORDERS for folder in ORDERS[inside]])
 def test_dependencies_point_one_way(inside, folder):
     """A folder imports only from folders that are listed before it. Tests may import everything."""
     listed, allowed = list(ORDERS[inside]), ORDERS[inside][folder]
     assert set(allowed) <= set(listed[: listed.index(folder)])
-    files = [path for path in (ROOT / inside / folder).rglob("*.py") if ROOT / "verif/tests" not in path.parents]
-    assert files
-    for path in files:
+    assert files_of(folder, inside)
+    for path in files_of(folder, inside):
         assert imported_folders(path, inside) <= {folder, *allowed}, path
 
 
@@ -114,9 +123,8 @@ def asked_names(path: Path) -> list[str]:
 
 def test_nothing_outside_an_engine_asks_for_its_name():
     """An engine's abilities are its properties. Tests may ask for names."""
-    files = [path for folder in MAY_IMPORT for path in (ROOT / folder).rglob("*.py")]
-    inside = {ROOT / "raycaster/engines", ROOT / "verif/tests"}
-    outside = [path for path in files if not inside & {*path.parents}]
+    files = [path for folder in MAY_IMPORT for path in files_of(folder)]
+    outside = [path for path in files if ROOT / "raycaster/engines" not in path.parents]
     assert [line for path in outside for line in asked_names(path)] == []
 
 
@@ -124,12 +132,25 @@ def test_each_folder_is_listed_and_linked():
     """An import of raycaster.golden finds golden/, in an editor too."""
     assert {path.parent.name for path in (ROOT / "rtl").glob("*/__init__.py")} == set(MAY_IMPORT_IN_RTL)
     links = {path.name: path.readlink() for path in (ROOT / "raycaster").iterdir() if path.is_symlink()}
-    assert links == {folder: Path("..", folder) for folder in MAY_IMPORT if folder != "raycaster"}
+    assert links == {folder: Path("..", folder) for folder in LINKED}
+    assert {path.name for path in (ROOT / "raycaster").iterdir() if path.is_dir()} - {"__pycache__", "engines"} == {
+        *MAY_IMPORT
+    } - {"raycaster"}
+
+
+@pytest.mark.parametrize("folder", ["rtl", "golden", "fpga"])
+def test_each_module_has_one_name(folder):
+    """What is imported as raycaster.rtl cannot be imported as rtl too, even where the clone is on Python's path."""
+    command = [sys.executable, "-c", f"import {folder}"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert f"ImportError: {folder} is a part of raycaster; import raycaster.{folder}" in done.stderr
 
 
 def test_the_wheel_has_every_file(tmp_path: Path):
     """The wheel has every module and every file that code reads from its folder, but no tests."""
-    tracked = subprocess.run(["git", "ls-files", *MAY_IMPORT], cwd=ROOT, capture_output=True, text=True, check=True)
+    tracked = subprocess.run(
+        ["git", "ls-files", "raycaster", *LINKED], cwd=ROOT, capture_output=True, text=True, check=True
+    )
     names = {name for name in tracked.stdout.split() if not name.startswith("verif/tests/")}
     wanted = {name for name in names if not (ROOT / name).is_symlink()}
     for name in names | {"pyproject.toml", "README.md", "LICENSE"}:

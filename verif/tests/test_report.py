@@ -24,12 +24,12 @@ from raycaster.report.extent import extent
 from raycaster.report.points import Point, Sweep, picture
 from raycaster.scene import find_scene
 
-CORNERS = str(ROOT / "scenes" / "corners.toml")
+CORNERS = str(ROOT / "raycaster" / "scenes" / "corners.toml")
 POINTS = (
     picture("seed:5", 4, "nearest", 1),
     Point("cells", "ray_unit", configure(screen="tiny", units=1, rectangles=1, allow_underrun=True)),
     Point("left", CORNERS, configure(engine="exact")),
-    Point("time", "scenes/boxes.toml", configure(culling=False, fraction_bits=8), 5),
+    Point("time", "raycaster/scenes/boxes.toml", configure(culling=False, fraction_bits=8), 5),
 )
 
 
@@ -75,7 +75,9 @@ def test_a_small_report(tmp_path, monkeypatch):
     again = designs.of_kept(json.loads(json.dumps(figures["designs"])))
     plots.save(designs.work_precision(again, "frame_ms"), tmp_path / "again.svg")
     assert (tmp_path / "again.svg").read_text() == (tmp_path / "work_frame_ms.svg").read_text()
-    assert picture("scenes/corners.toml", 4, "nearest", 1).command in {row["command"] for row in rows("pictures")}
+    assert picture("raycaster/scenes/corners.toml", 4, "nearest", 1).command in {
+        row["command"] for row in rows("pictures")
+    }
     assert [row["left out"] for row in rows("left")][::9] == ["", "hidden rectangles"]
     best = rows("designs")
     assert {one["design"].split()[0] for one in best} == {"seed", "exact,", "beam"}

@@ -112,7 +112,7 @@ def _as_read(scene: Scene) -> dict[str, object]:
 @pytest.fixture(scope="module")
 def page(browser):
     for script in ("vendor/smol-toml.js", "scene.js"):
-        browser.add_script_tag(path=ROOT / "web" / "page" / script)
+        browser.add_script_tag(path=ROOT / "raycaster" / "web" / "page" / script)
     return browser
 
 

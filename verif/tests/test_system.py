@@ -19,7 +19,7 @@ from raycaster.play.system import check_program, play
 from raycaster.rtl.system import picorv32
 from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, build_model, convert
 
-MIRROR_ROOM = ROOT / "scenes" / "mirror_room.toml"
+MIRROR_ROOM = ROOT / "raycaster" / "scenes" / "mirror_room.toml"
 FIRST_FRAME = 1
 """First frame that shows the scene."""
 

@@ -21,7 +21,7 @@ from raycaster.play.machine import Machine, build_machine
 from raycaster.play.walk import Walker
 from raycaster.scene import UNTURNED, Camera, load_scene
 
-MIRROR_ROOM = ROOT / "scenes" / "mirror_room.toml"
+MIRROR_ROOM = ROOT / "raycaster" / "scenes" / "mirror_room.toml"
 
 
 @pytest.fixture
@@ -96,7 +96,7 @@ def test_a_camera_looks_around(tmp_path, capsys, pixels):
 def test_a_light_goes_around_the_room(tmp_path, capsys):
     """A quarter of the circle per frame, with the engine that draws shadows and a camera that stands still."""
     assert len(set(drawn(["evening"], tmp_path, capsys))) == 4
-    light = load_scene(ROOT / "scenes" / "evening.toml").light
+    light = load_scene(ROOT / "raycaster" / "scenes" / "evening.toml").light
     places = [game.circling(light, quarters / 4).position for quarters in range(5)]
     assert places[0] == places[4] == light.position and len(set(places)) == 4
     assert all(0 <= value < 512 for place in places for value in place)

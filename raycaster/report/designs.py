@@ -21,7 +21,7 @@ from raycaster.report import plots
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
 from raycaster.report.points import Point, Sweep, predicted_cycles, required_mhz
 
-WORST_SCENE = "scenes/mirror_room.toml"
+WORST_SCENE = "raycaster/scenes/mirror_room.toml"
 """Scene for the simulations: it fills the designs' rectangle tables, so no row of another scene takes longer."""
 
 RUNS = 5

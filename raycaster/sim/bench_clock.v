@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Clock of a bench: with MAIN_CLOCK, sim/main.cpp drives it through a port, which is faster; else the bench does.
+// Clock of a bench: with MAIN_CLOCK, raycaster/sim/main.cpp drives it through a port, which is faster; else the bench does.
 
 `ifdef MAIN_CLOCK
 `define CLOCK_PORT input wire clk /*verilator public_flat_rw*/

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A pixel's life, reconstructed from its ray unit's signals in each clock.
 //
-// Signals and events are those of the project's debugger (debug/probes). A probe says which taps of the design hold a
+// Signals and events are those of the project's debugger (raycaster/debug/probes). A probe says which taps of the design hold a
 // quantity, at which event of the control, and how many clocks after it.
 "use strict";
 

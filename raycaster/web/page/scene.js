@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Scene files in the browser: RayCasterScene.read returns the scene, or an error line for the same place and with the
-// same expectation as `load_scene` in raycaster/scene.py. Rules and messages come from there, through web/site.py; this
-// file implements each kind of rule. Syntax errors have the line and the words of vendor/smol-toml.js.
+// same expectation as `load_scene` in raycaster/scene.py. Rules and messages come from there, through
+// raycaster/web/site.py; this file implements each kind of rule. Syntax errors have the line and the words of
+// vendor/smol-toml.js.
 "use strict";
 
 const RayCasterScene = (() => {
@@ -172,7 +173,7 @@ const RayCasterScene = (() => {
    * Reads a scene file.
    * @param {string|ArrayBuffer} source text or bytes of the file
    * @param {string} name name of the file, for the error
-   * @param {object} schema schema from web/site.py
+   * @param {object} schema schema from raycaster/web/site.py
    * @param {number} [rectangles] number of rectangles that the hardware holds
    * @returns {{scene: ?object, error: ?string}} one of the two is null. Scene: title, rows, reflections, background,
    *   camera {position, yaw, pitch, roll}, light {position, quarters} or null, rect [{name, corners, colour, quarters,
