@@ -13,10 +13,9 @@ from pathlib import Path
 
 import pytest
 from conftest import SMALL_SCENE, called, refusal, refused
-from rich.text import Text
 
 from raycaster import output
-from raycaster.output import Console, Table, emptied, printable, replaced
+from raycaster.output import emptied, printable, replaced
 from raycaster.scene import load_scene
 
 HOSTILE = "[bold]x[/nope]\x1b[31m :smile: [link=http://x]y\x9b2J\u202e\nz"
@@ -115,17 +114,6 @@ def test_commands_show_text_as_it_is(hostile_scene: Path, words: tuple[str, ...]
         assert hostile_scene.name in done.stdout
     if words[0] == "verilog":
         assert "[bold]x[/nope]" in done.stdout  # the table wraps the rest
-
-
-def test_a_table_aligns_numbers(capsys):
-    table = Table("name", "count", "reason", title="Title", texts=("reason",))
-    table.add_row("a", 12345, Text("why"))
-    table.add_row("long", 6, "[b]")
-    Console().print(table)
-    lines = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
-    assert [line for line in lines if "\u2500" not in line] == [
-        "Title", "", " name   count  reason", " a     12,345  why", " long       6  [b]", "",
-    ]  # fmt: skip
 
 
 def test_a_full_disk(tmp_path: Path, monkeypatch):

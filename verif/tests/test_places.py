@@ -121,15 +121,6 @@ def program(*words: str, **variables: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, *words], env=environment, capture_output=True, text=True, check=False)
 
 
-def test_no_search_path(tmp_path: Path):
-    """The tools of /usr/bin are found without the variable PATH."""
-    ask = "from raycaster.sim.simulator import find_tool, library_sources; library_sources(find_tool('verilator'))"
-    done = program("-c", f"{ask}; from raycaster.tools import _search_path; print(_search_path())")
-    assert (done.returncode, done.stdout.strip().endswith(os.defpath)) == (0, True), done.stderr
-    ended = "from raycaster.options import run_command; run_command(lambda: __import__('os').environ['PATH'] and 3)"
-    assert program("-c", ended).returncode == 3
-
-
 @pytest.mark.parametrize("words", [["-O", "-m", "raycaster.cli"], ["-OO", "-m", "raycaster.cli"]])
 def test_python_without_checks_or_texts_is_refused(words: list[str]):
     done = program(*words, "options")

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import ast
 import importlib
 import importlib.metadata
 import json
@@ -55,12 +54,6 @@ def test_help(name: str, monkeypatch):
     assert not any("--divider-bits" in line for line in lines)
 
 
-@pytest.mark.parametrize(("words", "printed"), [("options", "--divider-bits"), ("--version", f"raycaster {VERSION}\n")])
-def test_prints(words: str, printed: str, capsys):
-    assert program.main([words]) == 0
-    assert printed in capsys.readouterr().out
-
-
 def test_make_help_installs_nothing(tmp_path: Path):
     """It works in a clone without an environment and leaves the clone unchanged."""
     (tmp_path / "Makefile").write_text((ROOT / "Makefile").read_text())
@@ -93,12 +86,6 @@ def test_bash_completion(tmp_path: Path, capsys):
         assert (set(done.stdout.split()), done.stderr) == (expected, ""), words
 
 
-@pytest.mark.parametrize("shell", ["zsh", "tcsh"])
-def test_other_completions(shell: str, capsys):
-    completion.main([shell])
-    assert "mirror_room" in capsys.readouterr().out
-
-
 WITHOUT_EXTRAS = """
 import sys
 sys.modules.update(dict.fromkeys({missing}))
@@ -126,14 +113,6 @@ def test_help_and_completions_without_an_extra():
         example = importlib.import_module(command.module).command_parser().example
         assert f"{example}\n\n" in done.stdout, name
     assert re.search("raycaster_report_option_strings=.*--quick", done.stdout)
-
-
-def test_the_module_and_the_program_print_the_same(tmp_path: Path):
-    program, module = (
-        subprocess.run([*start, "sim", "--enigne"], cwd=tmp_path, capture_output=True, text=True, check=False)
-        for start in ([Path(sys.executable).with_name("raycaster")], [sys.executable, "-m", "raycaster.cli"])
-    )
-    assert (program.stdout, program.stderr, program.returncode) == (module.stdout, module.stderr, module.returncode)
 
 
 @pytest.mark.parametrize(
@@ -200,21 +179,6 @@ def test_make_gets_suggestions_in_its_form(monkeypatch):
     assert suggested == "make soak SCENE='my scene.toml' PIXEL=3,4 STIFF=1 SIM=icarus"
 
 
-SPELLED = re.compile(r"(?<![\w-])(?:--[a-z][a-z-]+|[A-Z][A-Z_]+=|(?:leave|give|choose)(?: out)? [A-Z]{3,}\b)")
-FOLDERS = "raycaster", "sim", "fit", "fpga", "debug", "play", "web", "report", "convert", "docs", "golden"
-
-
-def test_no_message_spells_an_option_itself():
-    """Only `as_typed` and `command_line` do, in the form that the user types."""
-    found = []
-    for path in (path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("*.py"))):
-        raised = (node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Raise))
-        for text in (one for node in raised for one in ast.walk(node) if isinstance(one, ast.Constant)):
-            if isinstance(text.value, str) and SPELLED.search(text.value.replace("--help", "")):
-                found.append(f"{path.relative_to(ROOT)}:{text.lineno}: {text.value}")
-    assert found == []
-
-
 def test_the_first_scene_of_the_readme_is_worth_seeing(tmp_path: Path):
     """Less than half of its picture is background, and floor, mirror and reflections have their own colours."""
     [text] = re.findall(r"```toml\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
@@ -223,15 +187,6 @@ def test_the_first_scene_of_the_readme_is_worth_seeing(tmp_path: Path):
     pixels = model_of(design.configuration).render(design.shown, design.configuration.screen_geometry).reshape(-1, 3)
     assert (pixels == design.scene.background).all(axis=1).mean() < 0.5
     assert len({tuple(pixel) for pixel in pixels.tolist()}) >= 6
-
-
-def test_scenes_are_listed_with_what_they_need(capsys):
-    assert program.main(["scenes"]) == 0
-    lines = {
-        line.split()[0]: " ".join(line.split()[4:]) for line in capsys.readouterr().out.splitlines() if line.split()
-    }
-    needs = {"mirror_room": "", "chessboard": "mirrors, patterns", "colonnade": "turn, mirrors, patterns, light"}
-    assert {name: lines[name] for name in needs} == needs
 
 
 @pytest.mark.parametrize(

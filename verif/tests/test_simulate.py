@@ -15,14 +15,13 @@ from PIL import Image
 
 from raycaster.configuration import OPTIONS as DESIGN_OPTIONS
 from raycaster.configuration import configure
-from raycaster.design import Design, design_for, left_out, packaged_for
+from raycaster.design import design_for, left_out, packaged_for
 from raycaster.engines.engine import LOOKS
-from raycaster.fit.fixing import fix
 from raycaster.output import Console, emptied, replaced
-from raycaster.scene import load_scene, packaged_scenes
+from raycaster.scene import packaged_scenes
 from raycaster.sim import scenes as simulate
 from raycaster.sim.contact_sheet import CAPTION
-from raycaster.sim.scenes import PICTURED, Outcome, output_directory, run_all, show
+from raycaster.sim.scenes import PICTURED, output_directory, run_all
 from raycaster.sim.simulator import MODELS_VARIABLE, Model, SimulationError, convert
 
 # Icarus builds quickly.
@@ -74,34 +73,6 @@ def test_one_scene_and_two(tmp_path, monkeypatch):
     assert f"2 scenes, 0 of 24,576 pixels wrong {sizes}; pictures: {pictures}\n" in said
     _sim(tmp_path)
     assert {path.name for path in output.iterdir()} == {"small", "other", "mine"}, "the sheet has an older frame"
-
-
-NAMES = ("checkered_hall", "facing_mirrors")
-
-
-@pytest.mark.parametrize("engine", ["seed", "beam"])
-def test_the_table_fits_a_terminal(engine, capsys):
-    """No number is cut off, and each line names its engine."""
-    config = configure(engine=engine)
-    result = {
-        "pixels": 307200, "wrong_vs_golden": 12345, "wrong_vs_exact": 12345, "frame_cycles": 1234567,
-        "worst_row_cycles": 3199, "worst_group_cycles": 159, "underrun": False, "sim_seconds": 123.45,
-    }  # fmt: skip
-    scene = load_scene(SMALL_SCENE)
-    outcomes = [Outcome(Design(Path(f"{name}.toml"), scene, config, 1), result) for name in NAMES]
-    show(outcomes, Console(width=80))
-    lines = capsys.readouterr().out.splitlines()
-    assert max(map(len, lines)) <= 80
-    assert "…" not in "".join(lines)
-    rows = [line.split() for line in lines if engine in line.split()]
-    assert len(rows) == len(NAMES)
-    for row in rows:
-        assert {"12345", "1234567", "123.45"} < {*row}
-        # The golden models of other engines are exact, so a second count would add nothing.
-        assert row.count("12345") == (2 if engine == "seed" else 1)
-        assert sum(cell.endswith("%") for cell in row) == 2
-    # No column is empty, and each has a meaning.
-    assert ("exact" in lines[1] + lines[2]) == (engine == "seed")
 
 
 def test_pictures_of_another_screen_or_engine_are_kept_apart():
@@ -178,18 +149,6 @@ def test_a_wrong_pixel_fails(tmp_path):
     command = f"raycaster trace {SMALL_SCENE} --pixel 0,0 {OPTIONS}"
     for text in ("pixels are wrong", str(output / "sim.log"), str(output / "diff.png"), command):
         assert text in said
-
-
-@pytest.mark.parametrize("option", ["FIX", "PIXELS=2"])
-def test_what_cannot_be_traced(option, capsys):
-    """A wrong pixel of a design that the trace does not know leads to one that it knows."""
-    if option == "FIX":
-        design = fix(SMALL_SCENE, {"screen": "tiny"}, "all").design
-    else:
-        design = design_for(SMALL_SCENE, {"screen": "tiny", "engine": "beam", "pixels": 2})
-    outcome = Outcome(design, {"wrong_vs_golden": 1, "first_wrong_ray": [1, 2]})
-    simulate.show_traces([outcome], {}, "icarus", Console())
-    assert capsys.readouterr().out == f"small: a design with {option} is not traced; try the scene without {option}\n"
 
 
 def test_a_scene_chooses_what_it_needs(tmp_path):

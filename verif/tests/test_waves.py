@@ -78,26 +78,6 @@ def test_viewers_get_bits_of_signals(vcd):
     assert f"#{{wide[69:68]}} {' '.join(bits)}\n" in view.read_text()
 
 
-def test_wrong_names_and_files_get_one_line(vcd, tmp_path):
-    """An error is better than a file that the viewer would complain about."""
-    for signal, complaint in (
-        ("bench.dut.nothing", r"has no signal bench\.dut\.nothing"),
-        ("bench.clk:octal", "unknown number format: octal"),
-    ):
-        with pytest.raises(UserError, match=complaint):
-            write_files(vcd, View({"control": [signal]}, {}, 5, 70))
-    with pytest.raises(UserError, match=r"has no signal bench\.dut\.stat; similar names: bench\.dut\.state"):
-        vcd.sample(["bench.dut.stat"])
-    with pytest.raises(UserError, match="there is no such file"):
-        Waves(tmp_path / "nothing.fst")
-    (tmp_path / "text.fst").write_text("no waveform")
-    with pytest.raises(UserError, match="not a waveform"):
-        Waves(tmp_path / "text.fst")
-    vcd.path.write_text(VCD.replace(" clk ", " clock "))
-    with pytest.raises(UserError, match=r"has no signal bench\.clk"):
-        Waves(vcd.path).sample([])
-
-
 def test_the_viewer_that_is_there_is_opened(tmp_path, monkeypatch):
     """GTKWave or Surfer is opened if there is a display."""
     waves, files = tmp_path / "waves.fst", tmp_path / "view.gtkw"
