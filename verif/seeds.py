@@ -33,7 +33,7 @@ def add_seed_option(parser: argparse.ArgumentParser) -> None:
     """Add `--seed`, for a command that calls `drawn`."""
     parser.add_argument(
         "--seed", type=natural, default=os.environ.get(VARIABLE), metavar="N",
-        help="seed of the random numbers, which repeats a run (default: the date, or the seed of an unfinished run)",
+        help="seed of the random numbers, which repeats a run (default: the date, unless a run is resumed)",
     )  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Draw random or stiff scenes with the converted hardware, at full size, and check every pixel: `make soak`.
 
-Random scenes are new each day; an unfinished run is resumed with its own.
+Random scenes are new each day; SEED= repeats those of another one.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 import argparse
 from collections import defaultdict
 from collections.abc import Sequence
-from pathlib import Path
 
 from raycaster.configuration import MOST_REFLECTIONS, Configuration, configure
 from raycaster.convert.digest import verilog_digest
@@ -66,32 +65,20 @@ def verilog(arguments: argparse.Namespace) -> str:
     return verilog_digest(_configuration(arguments))
 
 
-def _seeds(arguments: argparse.Namespace, unfinished: Path, console: Console) -> range:
-    """Return the seeds of the random scenes; keep the run's seed in a file until the run is finished."""
-    first = arguments.first
-    if first is None:
-        last = int(unfinished.read_text()) if unfinished.exists() and not arguments.fresh else None
-        options = {"seeds": arguments.seeds} | given_options(arguments)
-        seed = drawn("verify soak", arguments.seed, last, console, **options)
-        unfinished.parent.mkdir(parents=True, exist_ok=True)
-        unfinished.write_text(f"{seed}\n")
-        first = SCENES_PER_SEED * seed
-    return range(first, first + arguments.seeds)
-
-
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
     configuration, console = _configuration(arguments), Console()
-    output = arguments.build / "soak"
-    unfinished = output / f"{configuration.name}.seed"
-    seeds = range(len(catalogue(configuration.looks))) if arguments.stiff else _seeds(arguments, unfinished, console)
+    output, seeds = arguments.build / "soak", range(len(catalogue(configuration.looks)))
+    if not arguments.stiff:
+        options, first = {"seeds": arguments.seeds} | given_options(arguments), arguments.first
+        if first is None:
+            first = SCENES_PER_SEED * drawn("verify soak", arguments.seed, None, console, **options)
+        seeds = range(first, first + arguments.seeds)
     whole = Campaign(
         BENCH, configuration, seeds, output, arguments.build, simulator=arguments.simulator, stiff=arguments.stiff
     )
     outcome = run_asked(whole, arguments, console)
-    if not outcome.missing:
-        unfinished.unlink(missing_ok=True)
     results = outcome.results
     show(results, outcome.seconds, configuration, console, stiff=arguments.stiff)
     counts = {name: sum(one[name] for one in results) for name in ("pixels", "wrong_vs_golden", "wrong_vs_exact")}

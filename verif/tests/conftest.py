@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import contextlib
-import datetime
 import io
 import os
 import re
@@ -14,7 +13,6 @@ import sysconfig
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -33,7 +31,6 @@ from raycaster.output import MARK
 from raycaster.sim import ensure_tools
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import MODELS_VARIABLE, VERILATOR_FLAGS, build_model, convert, find_tool, run_bench
-from raycaster.verif import seeds
 from raycaster.verif.recording import RECORD_VARIABLE, record_test
 from raycaster.verif.seeds import repeat, seed
 
@@ -194,13 +191,6 @@ def bench(output: Path, tmp_path_factory: pytest.TempPathFactory) -> Bench:
 def random_values(start: int) -> tuple[str, str]:
     """Return options with which a model from Verilator starts with random registers and memories."""
     return "+verilator+rand+reset+2", f"+verilator+seed+{start}"
-
-
-def set_day(monkeypatch: pytest.MonkeyPatch, day: int) -> None:
-    """Let long runs draw their seed on a day of December 2026."""
-    monkeypatch.delenv(seeds.VARIABLE, raising=False)
-    today = SimpleNamespace(today=lambda: datetime.date(2026, 12, day))
-    monkeypatch.setattr(seeds, "datetime", SimpleNamespace(date=today))
 
 
 def called(*words: str, cwd: Path, program: Callable[[list[str]], int | None] = main) -> subprocess.CompletedProcess:
