@@ -121,8 +121,7 @@ CHECKS = {
     "prove": ("proofs", "as the table below says", "{proved} of {proofs} proved"),
     "mutate": (
         "faults planted in modules", "the modules' leaf tests",
-        "{caught:,} caught in {modules} modules; {caught_of_the_rest:.1%} of those that change something, "
-        "{worst_caught:.1%} in the worst module",
+        "{caught:,} caught in {modules} modules, {surviving:,} not",
     ),
     "coverage": ("code coverage", "seed", COVERED),
     "coverage-exact": ("code coverage", "exact", COVERED),

@@ -8,10 +8,8 @@ would have no effect. Verilator compiles the netlist with all faults and an inpu
 replayed. It is caught if an output differs from the expected one in a cycle that the test checks. Registers start as
 zeros, as ones and at random, because they are unknown in the tests' simulator.
 
-Survivors go to the solver z3. If no input sequence distinguishes a mutant from the module, it is equivalent, or
-equivalent under the module's contract, which lists assumptions about inputs, and invariants of registers that are
-proved first. The solver compares the module's own cells, so the inputs of submodules must not differ. All other
-survivors must be explained in mutation.toml, or it is an error; so is an explanation that no mutant needs.
+The survivors are listed, to be read: about one in twenty changes nothing that an output could show. It is an error if a
+module catches less than LEAST_CAUGHT of the share in results/mutate.json, with the same number of faults and seed.
 """
 
 from __future__ import annotations
@@ -26,11 +24,10 @@ import subprocess
 import sys
 import time
 import tomllib
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import groupby
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
@@ -42,24 +39,23 @@ from raycaster.digests import digest
 from raycaster.errors import UserError
 from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
-from raycaster.outcomes import add_keep_option, keep
+from raycaster.outcomes import RESULTS, add_keep_option, keep, kept_outcome
 from raycaster.output import Console, Table, emptied
 from raycaster.sim import ensure_tools
 from raycaster.sim.simulator import build_program
 from raycaster.tools import ToolError, run_yosys
 from raycaster.verif import expected, recording, seeds
-from raycaster.verif.formal.prover import missing_tools, with_all_looks
+from raycaster.verif.formal.prover import with_all_looks
 from raycaster.verif.recording import RECORD_VARIABLE, recording_name
 
 SOURCES = Path(__file__).parent
 RTL = Path(rtl.__file__).parent
 LEAVES = SOURCES.resolve().parent / "tests" / "leaves"
+KEPT = RESULTS / "mutate.json"
 MUTANTS = 200
 SEED = 20150
 LEAST_CAUGHT = 0.97
-"""Minimum share of the mutants that are not equivalent, in each module."""
-
-OUTCOMES = ("caught", "equivalent", "contract", "explained", "surviving")
+"""Minimum share of the mutants that each module caught in the kept figures."""
 
 
 class MutationError(ToolError):
@@ -67,24 +63,11 @@ class MutationError(ToolError):
 
 
 @dataclass(frozen=True)
-class Expectation:
-    """Facts about a module, from the data file.
+class Leaf:
+    """Leaf test whose recordings a module is mutated with, and its parameter sets; none for its last one."""
 
-    Attributes:
-        test: leaf test whose recordings are used; empty for the one with the module's name.
-        sets: its parameter sets; none for its last one.
-        assumptions: Verilog expressions of the module's inputs that its contract guarantees, each with its reason.
-        invariants: Verilog expressions of its registers, true from reset on; proved.
-        look_into: submodules that are part of what the solver compares, with `*` for any text.
-        explained: survivors, as `Mutant` prints them, with `*` for any text, each with the reason.
-    """
-
-    test: str = ""
+    test: str
     sets: Sequence[str] = ()
-    assumptions: Mapping[str, str] = field(default_factory=dict)
-    invariants: Sequence[str] = ()
-    look_into: Sequence[str] = ()
-    explained: Mapping[str, str] = field(default_factory=dict)
 
 
 def blocks() -> list[str]:
@@ -92,27 +75,22 @@ def blocks() -> list[str]:
     return sorted(path.stem for path in RTL.rglob("*.py") if f"@block\ndef {path.stem}(" in path.read_text())
 
 
-def expectations(path: Path = SOURCES / "mutation.toml") -> dict[str, Expectation]:
-    """Return the expectation of each block that is mutated, from the data file.
+def leaves_of_modules(path: Path = SOURCES / "mutation.toml") -> dict[str, Leaf]:
+    """Return the leaf test of each block that is mutated, from the data file.
 
     Raises:
         MutationError: it has an unknown key, or names no block.
     """
-    found = {name: Expectation(f"test_{name}") for name in blocks()}
+    found = {name: Leaf(f"test_{name}") for name in blocks()}
     for kind, entries in tomllib.loads(path.read_text()).items():
         for module, value in entries.items():
-            if module not in found or kind not in ("left_out", *Expectation.__dataclass_fields__):
+            if module not in found or kind not in ("left_out", *Leaf.__dataclass_fields__):
                 raise MutationError(f"{path.name}: {kind}.{module}: there is no such block or key")
             if kind == "left_out":
                 del found[module]
             else:
                 found[module] = replace(found[module], **{kind: value})
     return found
-
-
-def fits(pattern: str, text: str) -> bool:
-    """True if the pattern, in which `*` stands for any text, is the whole text."""
-    return re.fullmatch(re.escape(pattern).replace(r"\*", ".*"), text) is not None
 
 
 @dataclass
@@ -125,9 +103,7 @@ class Mutant:
         kind: kind of the cell: add, procmux, procdff, a submodule's instance, ...
         port: port of the cell, with the bit.
         at: the Verilog that the cell was made from.
-        options: options of Yosys's mutate command.
-        outcome: one of `OUTCOMES`.
-        detail: the cycle that caught it, or the reason why it may survive.
+        caught: the cycle that caught it, or -1.
     """
 
     selector: int
@@ -135,9 +111,7 @@ class Mutant:
     kind: str
     port: str
     at: str
-    options: str = field(repr=False)
-    outcome: str = "surviving"
-    detail: str = ""
+    caught: int = -1
 
     def __str__(self) -> str:
         return f"{self.mode} {self.kind} {self.port} at `{self.at}`"
@@ -152,13 +126,6 @@ class Result:
     cycles: int
     seconds: float
     mutants: list[Mutant]
-
-    def explain(self, explained: Mapping[str, str]) -> None:
-        """Mark the survivors that have an explanation."""
-        for mutant in self.mutants:
-            reason = next((why for pattern, why in explained.items() if fits(pattern, str(mutant))), None)
-            if mutant.outcome == "surviving" and reason:
-                mutant.outcome, mutant.detail = "explained", reason
 
 
 class Recording:
@@ -177,22 +144,18 @@ class Recording:
         for name in [*self._leaf["files"], *self._leaf["data"]]:
             shutil.copy(directory / name, work)
 
-    def run(self, count: int, seed: int, expectation: Expectation) -> Result:
-        """Plant up to `count` faults, replay them, and let the solver judge the survivors.
+    def run(self, count: int, seed: int) -> Result:
+        """Plant up to `count` faults and replay them.
 
         Raises:
-            MutationError: there is no place for a fault, the replay fails without one, or an invariant does not hold.
+            MutationError: there is no place for a fault, or the replay fails without one.
         """
         begin = time.monotonic()
-        mutants = self.plant(count, seed, expectation.look_into)
+        mutants = self.plant(count, seed)
         if not mutants:
             raise MutationError(f"{self.module} has no cell that a fault could be in")
         self._replay(mutants)
-        if survivors := [mutant for mutant in mutants if mutant.outcome == "surviving"]:
-            self._compare(survivors, expectation)
-        result = Result(self.module, self.name, self._leaf["cycles"], time.monotonic() - begin, mutants)
-        result.explain(expectation.explained)
-        return result
+        return Result(self.module, self.name, self._leaf["cycles"], time.monotonic() - begin, mutants)
 
     def _read(self) -> list[str]:
         return [
@@ -217,31 +180,11 @@ class Recording:
         texts = {Path(name).stem: (self._work / name).read_text() for name in self._leaf["files"][:-1]}
         return [name for name, text in texts.items() if not re.search(r"^module \w+ #\(", text, re.MULTILINE)]
 
-    def plant(self, count: int, seed: int, look_into: Sequence[str] = ()) -> list[Mutant]:
-        """Choose up to `count` faults, and write the netlist with all of them, for simulation and for the solver.
-
-        For the solver, submodules except those in `look_into` are only ports: equal inputs give equal outputs.
-        """
-        ports = [name for name in self._submodules if not any(fits(pattern, name) for pattern in look_into)]
+    def plant(self, count: int, seed: int) -> list[Mutant]:
+        """Choose up to `count` faults, and write the netlist with all of them."""
         lines = self._choose(count, seed)
-        cut = [
-            # For a $pmux with two bits of S set, Verilog and SMT-LIB would choose different branches.
-            "pmuxtree",
-            f"write_verilog -noattr -selected {self.module}_mutants.v",
-            "select -clear",
-            *(f"setattr -mod -set keep_hierarchy 1 {name}" for name in ports),
-            *(f"proc -norom {name}" for name in self._submodules if name not in ports),
-            "flatten",
-            f"expose -evert -sep _ {self.module}/c:*",  # of its cells only, else all wires would become outputs
-            "memory_map",
-            "opt_clean",
-            "async2sync",
-            "dffunmap",
-            "setundef -zero",
-            *(f"delete {name}" for name in ports),
-            f"write_smt2 -stbv -wires {self.module}.smt2",
-        ]
-        run_yosys(self._work, "plant", [*self._read(), *lines, *cut])
+        written = f"write_verilog -noattr -selected {self.module}_mutants.v"
+        run_yosys(self._work, "plant", [*self._read(), *lines, written])
         return [self._describe(number, line) for number, line in enumerate(lines, 1)]
 
     def _choose(self, count: int, seed: int) -> list[str]:
@@ -295,9 +238,7 @@ class Recording:
         # "$add$file.v:12$34", "$procmux$34", "instance"
         kind = options["cell"].lstrip("$").split("$")[0]
         texts = dict.fromkeys(self._text(source) for source in re.findall(r"-src (\S+)", line))
-        return Mutant(
-            number, options["mode"], kind, f"{options['port']}[{options['portbit']}]", " / ".join(texts), line
-        )
+        return Mutant(number, options["mode"], kind, f"{options['port']}[{options['portbit']}]", " / ".join(texts))
 
     def _text(self, source: str) -> str:
         """Return the Verilog from `file:line.column` up to `line.column`, or its first line."""
@@ -326,9 +267,7 @@ class Recording:
         if fault_free != "0 -1":
             raise MutationError(f"{self.name}: the replay differs from the recording without any fault: {fault_free}")
         for mutant, line in zip(mutants, lines, strict=True):
-            cycle = int(line.split()[1])
-            if cycle >= 0:
-                mutant.outcome, mutant.detail = "caught", f"cycle {cycle}"
+            mutant.caught = int(line.split()[1])
 
     def _wrapper(self, selector_width: int) -> str:
         inputs, outputs = self._leaf["inputs"], self._leaf["outputs"]
@@ -345,19 +284,6 @@ assign out = {{{", ".join(outputs)}}};
 endmodule
 """
 
-    def _compare(self, survivors: Iterable[Mutant], expectation: Expectation) -> None:
-        # z3 may be missing if only this file's help or names are needed.
-        from raycaster.verif.mutation.equivalence import Comparison  # noqa: PLC0415
-
-        read = {f"{instance}_{port}": mask for (instance, port), mask in self.read_bits.items()}
-        ways = {"equivalent": Comparison(self._work, self.module, read)}
-        if expectation.assumptions or expectation.invariants:
-            given = tuple(expectation.assumptions), expectation.invariants
-            ways["contract"] = Comparison(self._work, self.module, read, *given)
-        for mutant in survivors:
-            shown = (outcome for outcome, way in ways.items() if way.equivalent(mutant.selector))
-            mutant.outcome = next(shown, mutant.outcome)
-
 
 def _netlist(path: Path, module: str) -> dict[str, Any]:
     """Read a module from Yosys's JSON."""
@@ -373,27 +299,27 @@ def _read_masks(netlist: Mapping[str, Any]) -> dict[str, int]:
     return {name: sum(1 << place for place, bit in enumerate(bits) if bit in used) for name, bits in inputs.items()}
 
 
-def leaf_tests() -> dict[str, list[str]]:
-    """Return the parameter sets of each leaf test, as pytest names them."""
+def leaf_tests(*arguments: str) -> dict[str, list[str]]:
+    """Return the parameter sets of each leaf test, as pytest names them, with these arguments of pytest."""
     sets = defaultdict(list)
-    for line in _pytest("--collect-only", str(LEAVES)).stdout.splitlines():
+    for line in _pytest("--collect-only", *arguments, str(LEAVES)).stdout.splitlines():
         sets[line.partition("[")[0].rpartition("::")[2]].append(line)
     return sets
 
 
-def recordings(known: Mapping[str, Expectation], sets: Mapping[str, list[str]]) -> dict[str, str]:
+def recordings(known: Mapping[str, Leaf], sets: Mapping[str, list[str]]) -> dict[str, str]:
     """Return the leaf tests to record for these modules, each with its module.
 
     Raises:
         MutationError: there is no such test or parameter set.
     """
     found = {}
-    for module, expectation in known.items():
-        there = sets.get(expectation.test, [])
-        wanted = [one for one in there if one.partition("[")[2][:-1] in expectation.sets]
-        chosen = wanted if expectation.sets else there[-1:]
-        if len(chosen) != max(len(expectation.sets), 1):
-            raise MutationError(f"{module}: expected sets {expectation.sets} of {expectation.test}, got {chosen}")
+    for module, leaf in known.items():
+        there = sets.get(leaf.test, [])
+        wanted = [one for one in there if one.partition("[")[2][:-1] in leaf.sets]
+        chosen = wanted if leaf.sets else there[-1:]
+        if len(chosen) != max(len(leaf.sets), 1):
+            raise MutationError(f"{module}: expected sets {leaf.sets} of {leaf.test}, got {chosen}")
         found |= dict.fromkeys(chosen, module)
     return found
 
@@ -430,64 +356,38 @@ def _recording_of(test: str) -> str:
     return recording_name(test.partition("::")[2])
 
 
-def count_outcomes(results: Iterable[Result]) -> dict[str, int]:
-    """Count the mutants with each outcome."""
-    counts = Counter(mutant.outcome for result in results for mutant in result.mutants)
-    return {outcome: counts[outcome] for outcome in OUTCOMES}
-
-
-def share_caught(results: Iterable[Result]) -> float:
-    """Return the caught share of the mutants that are not equivalent; explained ones count as not caught."""
-    counts = count_outcomes(results)
-    different = counts["caught"] + counts["explained"] + counts["surviving"]
-    return counts["caught"] / different if different else 1.0
-
-
-def by_module(results: Iterable[Result]) -> dict[str, list[Result]]:
-    """Return the results of each module."""
-    ordered = sorted(results, key=attrgetter("module"))
-    return {module: list(of_module) for module, of_module in groupby(ordered, attrgetter("module"))}
-
-
-def _table(results: list[Result]) -> Table:
-    table = Table("module", "mutants", *OUTCOMES, "of all", "of the rest", "seconds", title="Mutants of each module")
-    for label, chosen in {**by_module(results), "all": results}.items():
-        counts = count_outcomes(chosen)
-        total = sum(counts.values())
-        table.add_row(
-            label, total, *counts.values(), f"{counts['caught'] / max(total, 1):.1%}", f"{share_caught(chosen):.1%}",
-            f"{sum(result.seconds for result in chosen):.0f}", style="bold" if label == "all" else "",
-        )  # fmt: skip
-    return table
-
-
-def complaints(results: list[Result], known: Mapping[str, Expectation]) -> list[str]:
-    """List the reasons why the command fails; all explanations of the known modules must be needed."""
-    found = []
-    for module, of_module in by_module(results).items():
-        mutants = [(result.recording, mutant) for result in of_module for mutant in result.mutants]
-        for vectors, mutant in mutants:
-            if mutant.outcome == "surviving":
-                found.append(f"{module}: survives the vectors of {vectors}: {mutant}")
-        if share_caught(of_module) < LEAST_CAUGHT:
-            found.append(f"{module}: fewer than {LEAST_CAUGHT:.0%} of the mutants that differ are caught")
-        explained = [str(mutant) for _, mutant in mutants if mutant.outcome == "explained"]
-        for pattern in known[module].explained if module in known else ():
-            if not any(fits(pattern, text) for text in explained):
-                found.append(f"{module}: needed by no mutant: {pattern}")
+def by_module(results: Iterable[Result]) -> dict[str, list[int]]:
+    """Return the numbers of mutants that were caught, and that survived, in each module."""
+    found: dict[str, list[int]] = {}
+    for result in sorted(results, key=attrgetter("module")):
+        for mutant in result.mutants:
+            found.setdefault(result.module, [0, 0])[mutant.caught < 0] += 1
     return found
+
+
+def share_caught(counts: Sequence[int]) -> float:
+    """Return the caught share of a module's mutants."""
+    return counts[0] / sum(counts)
+
+
+def complaints(counts: Mapping[str, Sequence[int]], before: Mapping[str, Sequence[int]]) -> list[str]:
+    """List the modules that catch less than `LEAST_CAUGHT` of their share in earlier counts."""
+    return [
+        f"{module}: {share_caught(counts[module]):.1%} of the mutants are caught, {share_caught(earlier):.1%} before"
+        for module, earlier in before.items()
+        if module in counts and share_caught(counts[module]) < LEAST_CAUGHT * share_caught(earlier)
+    ]
 
 
 @dataclass(frozen=True)
 class Job:
-    """A recording to work on, without the explanations, which do not change what survives."""
+    """A recording to work on."""
 
     test: str
     module: str
     build: Path
     mutants: int
     seed: int
-    expectation: Expectation
 
     @property
     def name(self) -> str:
@@ -502,9 +402,8 @@ class Job:
     def place(self) -> Path:
         """Return the file in which the result is kept."""
         files = sorted(path for path in self.directory.iterdir() if path.is_file())
-        choice = self.mutants, self.seed, replace(self.expectation, test="", sets=())
-        tools = inspect.getsource(Recording), SOURCES / "equivalence.py", SOURCES / "replay.cpp"
-        key = digest(choice, [path.name for path in files], *files, *tools)
+        tools = inspect.getsource(Recording), SOURCES / "replay.cpp"
+        key = digest(self.mutants, self.seed, [path.name for path in files], *files, *tools)
         return self.build / "results" / f"{self.name}-{key}.pickle"
 
     def run(self) -> Result | str:
@@ -513,9 +412,42 @@ class Job:
             recording = Recording(self.directory, self.build / "work" / self.name)
             if recording.module != self.module:
                 return f"{self.test}: expected a test of {self.module}, got one of {recording.module}"
-            return recording.run(self.mutants, self.seed, self.expectation)
+            return recording.run(self.mutants, self.seed)
         except UserError as error:
             return f"{self.test}: {error}"
+
+
+def mutate(
+    known: Mapping[str, Leaf], mutants: int, seed: int, arguments: argparse.Namespace, console: Console
+) -> tuple[list[Result], list[str]]:
+    """Record the leaf tests of these modules and replay their mutants.
+
+    Args:
+        known: the modules.
+        mutants: most faults per recording.
+        seed: seed of the faults.
+        arguments: options of jobs, `fresh`, and the directory `build`.
+        console: console for the progress.
+
+    Returns:
+        The results, and the messages of recordings that failed.
+    """
+    ensure_tools.ensure("icarus")
+    build = arguments.build.resolve()  # tools run in the folders below it
+    with console.waiting("recording the leaf tests"):
+        tests = recordings(known, leaf_tests())
+        record(tests, build / "recordings", arguments.jobs)
+    jobs = [Job(test, module, build, mutants, seed) for test, module in tests.items()]
+
+    def finished(job: Job, found: Result | str) -> None:
+        """Print a line for each recording, for a log without a progress bar."""
+        said = found if isinstance(found, str) else f"{found.seconds:.0f} s"
+        console.print(f"{job.name}: {said}", soft_wrap=True)
+
+    kept = Kept(Job.place, arguments.fresh, complete=lambda found: isinstance(found, Result))
+    with executors(arguments.scheduler, arguments.jobs) as make_executor:
+        done = run_jobs("recordings", Job.run, jobs, make_executor, console, kept=kept, finished=finished)
+    return [one for one in done if isinstance(one, Result)], [one for one in done if isinstance(one, str)]
 
 
 def command_parser() -> CommandParser:
@@ -534,60 +466,38 @@ def command_parser() -> CommandParser:
 
 
 def verilog(arguments: argparse.Namespace) -> str:
-    """Digest the Verilog of the designs whose modules get faults."""
+    """Digest the Verilog that is mutated, in designs that have all its blocks."""
     return verilog_digest(*with_all_looks())
 
 
-def unmutated(known: Iterable[str]) -> list[str]:
-    """List the blocks of the hardware that are not among these modules."""
-    return sorted({*blocks()} - {*known})
-
-
 def main(argv: list[str] | None = None) -> int:
-    """Run the command; it fails if a survivor is not explained, an explanation is stale, or too few are caught."""
+    """Run the command; it fails if a module catches less than before, or a recording failed."""
     arguments = command_parser().parse_args(argv)
-    arguments.build = arguments.build.resolve()  # tools run in the folders below it
-    ensure_tools.ensure("icarus")
-    if missing := missing_tools():
-        raise UserError(f"{', '.join(missing)} not found; install the extra `formal` of this package")
-    known = expectations()
+    known = leaves_of_modules()
     for module in arguments.module or []:
         if module not in known:
             raise UserError(f"module: got {module}, expected one of {', '.join(known)}")
     known = {module: known[module] for module in arguments.module or known}
     console = Console()
-    with console.waiting("recording the leaf tests"):
-        tests = recordings(known, leaf_tests())
-        record(tests, arguments.build / "recordings", arguments.jobs)
-    jobs = [
-        Job(test, module, arguments.build, arguments.mutants, arguments.seed, replace(known[module], explained={}))
-        for test, module in tests.items()
-    ]
-
-    def finished(job: Job, found: Result | str) -> None:
-        """Print a line for each recording, for a log without a progress bar."""
-        said = found if isinstance(found, str) else f"{found.seconds:.0f} s, {share_caught([found]):.1%} caught"
-        console.print(f"{job.name}: {said}", soft_wrap=True)
-
-    kept = Kept(Job.place, arguments.fresh, complete=lambda found: isinstance(found, Result))
-    with executors(arguments.scheduler, arguments.jobs) as make_executor:
-        done = run_jobs("recordings", Job.run, jobs, make_executor, console, kept=kept, finished=finished)
-    results = [one for one in done if isinstance(one, Result)]
-    failures = [one for one in done if isinstance(one, str)]
-    for result in results:
-        result.explain(known[result.module].explained)
-    (arguments.build / "results.json").write_text(json.dumps([asdict(result) for result in results], indent=2) + "\n")
-    console.print(_table(results))
-    shares = {module: share_caught(of_module) for module, of_module in by_module(results).items()}
-    worst = min(shares, key=shares.__getitem__, default="")
-    figures = {
-        "modules": len(shares), "recordings": len(results), **count_outcomes(results), "not_run": len(failures),
-        "caught_of_the_rest": share_caught(results), "worst": worst, "worst_caught": shares.get(worst),
-    }  # fmt: skip
-    keep(arguments, figures, verilog, ", ".join(unmutated(known)))
-    # Other choices of faults need not have the survivors that are explained.
-    usual = (arguments.mutants, arguments.seed) == (MUTANTS, SEED)
-    found = failures + complaints(results, known if usual and not failures else {})
-    for complaint in found:
-        console.print(complaint, style="red", soft_wrap=True)
-    return 1 if found else 0
+    results, failures = mutate(known, arguments.mutants, arguments.seed, arguments, console)
+    survivors = [f"{one.module}: {mutant}" for one in results for mutant in one.mutants if mutant.caught < 0]
+    (arguments.build / "survivors.txt").write_text("".join(f"{line}\n" for line in survivors))
+    counts = by_module(results)
+    table = Table("module", "caught", "surviving", "share caught", title="Mutants of each module")
+    total = [sum(each) for each in zip(*counts.values(), strict=True)]
+    for label, found in {**counts, "all": total}.items() if counts else ():
+        table.add_row(label, *found, f"{share_caught(found):.1%}")
+    console.print(table)
+    console.print(f"survivors: {arguments.build / 'survivors.txt'}", soft_wrap=True)
+    if counts:
+        worst = min(counts, key=lambda module: share_caught(counts[module]))
+        figures = {
+            "modules": len(counts), "caught": total[0], "surviving": total[1], "not_run": len(failures),
+            "worst": worst, "worst_caught": share_caught(counts[worst]), "by_module": counts,
+        }  # fmt: skip
+        keep(arguments, figures, verilog, ", ".join(sorted({*blocks()} - {*known})))
+    usual = (arguments.mutants, arguments.seed) == (MUTANTS, SEED) and KEPT.exists()
+    before = kept_outcome(KEPT).figures.get("by_module", {}) if usual else {}
+    complaint = failures + complaints(counts, before)
+    console.print("\n".join(complaint), style="red", soft_wrap=True)
+    return 1 if complaint else 0
