@@ -9,7 +9,7 @@ PYTHON3 ?= python3
 VENV := .venv
 PYTHON := $(VENV)/bin/python
 COMMANDS := sim scenes play game web wave trace verilog fit area quartus bitstream registers report docs
-CHECKS := soak prove mutate coverage upsets verify-all
+CHECKS := soak prove mutate gate coverage upsets verify-all
 # The program gets command-line variables exactly as typed: `value` and `unexport` keep make from expanding them, quotes
 # keep the shell from expanding them, and one shell per recipe preserves line breaks inside them.
 GIVEN := $(foreach name,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $(name)))),$(name)))
@@ -29,7 +29,7 @@ coverage: EXTRAS := coverage
 prove: EXTRAS := formal
 sim: EXTRAS := $(if $(filter-out 0,$(value GATES)),formal)
 mutate: EXTRAS := formal,test
-lint test verify-all: EXTRAS := formal,fpga,report,coverage,play,docs,test
+lint test gate verify-all: EXTRAS := formal,fpga,report,coverage,play,docs,test
 
 .PHONY: help $(COMMANDS) $(CHECKS) test lint clean
 .NOTPARALLEL:

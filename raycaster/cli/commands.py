@@ -50,6 +50,7 @@ COMMANDS: Mapping[str, Command] = {
     "verify soak": Command("raycaster.verif.soak.soak", "compare random scenes at full size"),
     "verify prove": Command("raycaster.verif.formal.prove", "prove properties of the Verilog", "formal"),
     "verify mutate": Command("raycaster.verif.mutation.mutate", "plant faults that the tests must notice", "formal"),
+    "verify gate": Command("raycaster.verif.gate", "check that tests still notice planted faults", "test"),
     "verify coverage": Command("raycaster.verif.coverage.measure", "measure code and functional coverage", "coverage"),
     "verify upsets": Command("raycaster.verif.upsets.upsets", "disturb a running design and check that it recovers"),
     "verify dvi": Command("raycaster.verif.dvi.watch", "decode and compare a board's video output"),

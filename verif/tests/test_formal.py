@@ -46,11 +46,12 @@ def test_a_property_holds(proof, output):
     ]
 )  # fmt: skip
 @pytest.mark.parametrize("proof", FAULTY, ids=str)
-def test_faults_in_the_hardware_are_found(proof, output):
+def test_faults_in_the_hardware_are_found(proof, output, record_property):
     """A run from reset contradicts the property; a failing induction step would not show that it can happen."""
     model_with_faults(proof, output / "planted")
     found = {fault: outcome(proof, output / "planted", fault, timeout=300) for fault in proof.faults}
     assert found == dict.fromkeys(proof.faults, "failed")
+    record_property("planted", len(found))
 
 
 def test_a_fault_that_no_run_shows_is_not_found(output):
@@ -227,7 +228,7 @@ def test_a_lemma_holds(lemma, output):
 
 
 @every_lemma
-def test_faults_in_a_lemma_are_found(lemma):
+def test_faults_in_a_lemma_are_found(lemma, record_property):
     """Python's arithmetic confirms each counterexample.
 
     Some faults are in the conclusion, which shows that the hypotheses do not contradict each other.
@@ -241,6 +242,7 @@ def test_faults_in_a_lemma_are_found(lemma):
         assert not contradicted(lemma, values), values
         in_conclusion += fault.given == lemma.given
     assert in_conclusion
+    record_property("planted", len(LEMMA_FAULTS[lemma.label]))
 
 
 def test_a_fault_fails_the_proof_of_a_lemma(output):
