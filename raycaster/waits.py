@@ -9,12 +9,12 @@ from collections.abc import Mapping
 from raycaster.engines import ENGINES
 
 COMMANDS: Mapping[str, str] = {"area": "3 min", "fit": "4 min per scene", "docs": "7 min"}
-"""Durations by command, with its default options and nothing kept from an earlier run."""
+"""Durations by command, with its default options."""
 
 
 def announce(command: str) -> None:
     """Print on standard error how long a command usually takes, whether or not that is a terminal."""
-    print(f"{command}: usually {COMMANDS[command]}, less with kept results", file=sys.stderr, flush=True)
+    print(f"{command}: usually {COMMANDS[command]}", file=sys.stderr, flush=True)
 
 
 def building(engine: str) -> str:

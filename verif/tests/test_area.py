@@ -13,10 +13,9 @@ from conftest import called
 
 from raycaster.configuration import configure
 from raycaster.convert.take_home import TOP
-from raycaster.fpga import area, cells, flows
+from raycaster.fpga import area, flows
 from raycaster.fpga.area import CHIPS
 from raycaster.fpga.cells import FAMILIES, Area, measure, measure_modules
-from raycaster.output import emptied
 
 SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True, culling=False)
 
@@ -138,34 +137,8 @@ def test_the_command(tmp_path):
     options = ("--screen", "tiny", "--units", "2", "--rectangles", "1", "--reflections", "0", "--divider-bits", "1")
     options += ("--allow-underrun", "--culling", "0", "--family", "ecp5", "--keep", "area.json")
     done = called("area", *options, cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (0, "area: usually 3 min, less with kept results\n")
+    assert (done.returncode, done.stderr) == (0, "area: usually 3 min\n")
     [counted] = json.loads((tmp_path / "area.json").read_text())["figures"]["families"].values()
     assert counted["multipliers"] == 4
     assert re.search(rf"ULX3S +LFE5U-85F +83,640 +{counted['elements']:,} +\d+% +4 of 156", done.stdout)
     assert {chip.family for chip in CHIPS} == set(FAMILIES)
-
-
-def test_a_design_is_counted_once(tmp_path, monkeypatch):
-    """A kept count needs no Yosys; other designs, families and modules are counted separately."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("PATH", "")
-    asked = []
-
-    def write(config, directory):
-        emptied(directory)
-        (directory / "design.v").write_text(config.name)
-        return [directory / "design.v"]
-
-    def netlist(directory, script):
-        asked.append(script[-3])
-        return {top: {"cells": {}} for top in (TOP, "ray_unit")}
-
-    monkeypatch.setattr(cells, "write_verilog", write)
-    monkeypatch.setattr(cells, "_netlist", netlist)
-    ecp5 = FAMILIES["ecp5"]
-    for _ in range(2):
-        measure(SMALL, ecp5, tmp_path / "one")
-        measure(SMALL, ecp5, tmp_path / "unit", "ray_unit")
-        measure(SMALL, FAMILIES["cyclonev"], tmp_path / "other")
-        measure(replace(SMALL, rectangles=3), ecp5, tmp_path / "more")
-    assert len(asked) == 4
