@@ -38,6 +38,9 @@ ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build"
 """Models are shared with `make sim`."""
 
+KEPT = Path(__file__).with_name("kept")
+"""Texts as they were reviewed."""
+
 SMALL_SCENE = Path(__file__).with_name("small.toml")
 
 FLOOR_SCENE = """
@@ -230,6 +233,13 @@ def refusal(directory: Path, *words: str) -> str:
     assert not any(line.startswith(("error", "Traceback")) for line in announced), done
     assert files() == before
     return "\n".join([*announced, error])
+
+
+def compare_kept(path: Path, text: str) -> None:
+    """Compare a text with the file of a reviewed one, which it replaces with `KEEP=1` in the environment."""
+    if os.environ.get("KEEP"):
+        path.write_text(text)
+    assert text == path.read_text(), f"if {path.name} should be so, pytest with KEEP=1 in its environment keeps it"
 
 
 def run_tool(directory: Path, *command: str, **variables: str) -> subprocess.CompletedProcess[str]:

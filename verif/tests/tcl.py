@@ -3,17 +3,15 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 from collections.abc import Sequence
 from difflib import ndiff
 from importlib.metadata import version
 from pathlib import Path
 
-from raycaster.sim import ensure_tools
+from conftest import KEPT, compare_kept
 
-KEPT = Path(__file__).with_name("kept")
-"""Calls as they were reviewed."""
+from raycaster.sim import ensure_tools
 
 RECORD = r"""
 rename package ""
@@ -56,7 +54,4 @@ def compare_calls(name: str, calls: list[list[str]], base: Sequence[list[str]] =
     if base:
         lines = [line for line in ndiff(before, lines) if line[0] in "+-"]
     text = "".join(lines).replace(version("raycaster"), "VERSION")
-    path = KEPT / f"{name}.txt"
-    if os.environ.get("KEEP"):
-        path.write_text(text)
-    assert text == path.read_text(), f"if {path.name} should be so, pytest with KEEP=1 in its environment keeps it"
+    compare_kept(KEPT / f"{name}.txt", text)

@@ -8,7 +8,6 @@ of these files, `file: text -> text`, and before what it prints. Escapes are Pyt
 from __future__ import annotations
 
 import datetime
-import os
 import re
 import shlex
 import shutil
@@ -16,7 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, plant, refusal
+from conftest import ROOT, compare_kept, plant, refusal
 
 from raycaster.options import FROM_MAKE
 from raycaster.sim.simulator import MODELS_VARIABLE
@@ -58,7 +57,6 @@ def said(command: str, directory: Path) -> str:
 
 @pytest.mark.parametrize("path", sorted(MISTAKES.glob("*.txt")), ids=lambda path: path.stem)
 def test_a_mistake_gets_one_line(path: Path, tmp_path: Path):
-    """If what is printed should be as it is now, pytest with `KEEP=1` in its environment keeps it."""
     found = []
     for number, (text, edits, command) in enumerate(cases(path)):
         directory = shutil.copytree(MISTAKES / "files", tmp_path / str(number))
@@ -66,10 +64,7 @@ def test_a_mistake_gets_one_line(path: Path, tmp_path: Path):
             plant(directory / name, right, wrong)
         found.append(f"{text}$ {command}\n{said(command, directory)}\n")
         shutil.rmtree(directory)
-    text = "\n".join(found)
-    if os.environ.get("KEEP"):
-        path.write_text(text)
-    assert text == path.read_text()
+    compare_kept(path, "\n".join(found))
 
 
 @pytest.mark.parametrize(
