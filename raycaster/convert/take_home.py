@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Write the files that let the Verilog build in other people's flows.
 
-These are file lists, constraints, waivers, an instantiation template, and a first test bench.
+These are file lists, constraints, waivers, and a first test bench.
 """
 
 from __future__ import annotations
@@ -54,9 +54,7 @@ def write_take_home(config: Configuration, prefix: str, modules: Sequence[Module
     (directory / BENCHES).mkdir()
     (directory / BENCHES / SMOKE_BENCH.name).write_text(_bench(config, top))
     path = directory / f"{top}.v"
-    text = path.read_text()
-    path.write_text(text.replace(f"{config.name}\n", f"{config.name}\n{_description(config)}", 1))
-    (directory / f"{top}.veo").write_text(_template(config, top, text))
+    path.write_text(path.read_text().replace(f"{config.name}\n", f"{config.name}\n{_description(config)}", 1))
 
 
 def waivers(sources: Sequence[str], prefix: str = "") -> str:
@@ -126,33 +124,6 @@ def _quartus_list(config: Configuration, top: str, sources: Sequence[str]) -> st
 # {top}, {config.name}.
 # {top}.sdc is not in this list, as it only applies if this module is the top of the design.
 {files}"""
-
-
-def _template(config: Configuration, top: str, text: str) -> str:
-    """Return an instance of the top, with the comments and the shape of each port.
-
-    Args:
-        config: the design.
-        top: name of the module.
-        text: Verilog of the module.
-    """
-    [listed] = re.findall(rf"^module {top} \(\n(.*?)^\);", text, re.M | re.S)
-    ports = re.findall(r"^( +//.*|.*\w)(?:,?)$", listed, re.M)
-    names = [port.split()[-1] for port in ports if "//" not in port]
-    pad = max(map(len, names))
-    lines = []
-    for port in ports:
-        direction, _, *width, name = port.split()
-        comma = "," if name != names[-1] else ""
-        pin = f"    .{name}({name}){comma}"
-        lines.append(port if "//" in port else f"{pin:<{2 * pad + 9}}// {' '.join([direction, *width])}")
-    body = "\n".join(lines)
-    return f"""// SPDX-License-Identifier: MIT
-// {top}, {config.name}. Copy this into your own module, and connect your signals.
-{top} {top}_i (
-{body}
-);
-"""
 
 
 def _constraints(config: Configuration, top: str, pixel_clock: str) -> str:

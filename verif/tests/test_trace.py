@@ -206,13 +206,6 @@ def test_values_have_names_and_colours_are_colours():
     assert "origin, z is 7, expected 6;" in line("origin", (4, 5, 6), (4, 5, 7))
     of_rectangle = ((0, 0, 0xC8C8B4, 0, 0, 0, 0), (0, 0, 0xA00, 0, 0, 0, 0), 0)
     assert "rectangle, colour is #000a00, expected #c8c8b4;" in line("rectangle", *of_rectangle)
-    assert "rectangle, axis is 1, expected 0;" in line("rectangle", (0,) * 7, (1,) + (0,) * 6, 0)
-    narrow = Ray(design_for(SCENE, {"screen": "tiny", "units": "8", "rectangles": "3", "colour_bits": "4"}), 2, 48)
-    pixel = Reading(probes["pixel"], Place(0), 0, 0, (0x1F0,), (0,))
-    assert "pixel is #000000, expected #10f000;" in difference_line(narrow, pixel)
-    console = Console(width=160, record=True, file=io.StringIO())
-    show(ray, [Reading(probes["pins"], Place(1), 0, 0, (1, 2, 3), (1, 9, 3))], console)
-    assert "pins (red, green, blue)" in console.export_text()
 
 
 FAULTS = {

@@ -249,24 +249,16 @@ def test_explains_a_pixel(golden, options):
     assert not config.light or {LIT, DARK_SIDE} < shadows
 
 
-def test_compiles_once_without_errors(tmp_path, monkeypatch):
+def test_an_error_of_the_compiler_is_one_line(tmp_path, monkeypatch):
     source = tmp_path / "golden.cpp"
     monkeypatch.setattr(wasm, "GOLDEN", source)
     monkeypatch.delenv(MODELS_VARIABLE)
     source.write_text("int one = two;\n")
-    for _ in range(2):  # a failure does not count as compiled
-        with pytest.raises(UserError, match=r"^the compiler failed on golden; its log is \S+\.log$") as refused:
-            golden_wasm(tmp_path)
-        assert "'two'" in Path(str(refused.value).rpartition(" ")[2]).read_text()
+    with pytest.raises(UserError, match=r"^the compiler failed on golden; its log is \S+\.log$") as refused:
+        golden_wasm(tmp_path)
+    assert "'two'" in Path(str(refused.value).rpartition(" ")[2]).read_text()
     source.write_text("int one = 1;\n")
-    compiled = golden_wasm(tmp_path)
-    before = compiled.stat().st_mtime_ns
-    assert (golden_wasm(tmp_path), compiled.stat().st_mtime_ns) == (compiled, before)
-    others = []
-    for name, value in (("GOLDEN_FLAGS", wasm.GOLDEN_FLAGS[1:]), ("DRIVER_HEADERS", [])):
-        monkeypatch.setattr(wasm, name, value)
-        others.append(golden_wasm(tmp_path))
-    assert len({compiled, *others}) == 3, "it is compiled again for other flags and headers"
+    assert golden_wasm(tmp_path).exists(), "a failure does not count as compiled"
     monkeypatch.setattr(wasm, "find_spec", lambda name: None)
     with pytest.raises(UserError, match=r"^ziglang is missing; it comes with the extra play: .*$"):
         golden_wasm(tmp_path)

@@ -151,27 +151,18 @@ def test_the_tab(page, site, engine, name):
     ask(page, scene=name)
     if engine != "exact":
         ask(page, engine=engine)
-    seen = set()
-    for column, row in random_pixels(20, 40):
+    for column, row in random_pixels(20, 3):
         ray = ray_of(packaged_scenes()[name], DESIGNS[engine], column, row)
         winners = [ray.winner(bounce) for bounce in range(ray.reflections + 1) if ray.alive(bounce)]
         texts = [text for bounce in range(len(winners)) for text in lighting(ray, Place(bounce)) or ()]
-        kinds = {text.partition(" by ")[0] for text in texts} or {"no light"}
-        if kinds <= seen:
-            continue
-        seen |= kinds
         state, context = ask(page, column=column, row=row), f"column {column}, row {row}"
         assert (state["column"], state["row"], state["wrong"]) == (column, row, False), context
         assert [bounce["winner"] for bounce in state["life"]["bounces"]] == winners, context
         assert state["golden"]["colour"] == state["monitor"] == ray.pixel, context
-        hits, lights = sum(winner >= 0 for winner in winners), int(ray.scene.light is not None)
-        expected = {"panel .wrong": 0, "life tr.seen": hits, "plan .hit": hits, "plan .light": lights}
-        expected["life h3"] = len(winners) + 1
-        assert {one: page.locator(f"#pixel-{one}").count() for one in expected} == expected, context
+        assert page.locator("#pixel-life h3").count() == len(winners) + 1, context
         shadows = page.locator("#pixel-life .scroll", has_text="Shadow ray, from")
         cells = shadows.locator("td:nth-child(2)").all_text_contents()
         assert cells == [text for text in texts for _ in ("hardware", "golden model")], context
-    assert not lights or seen >= {"lit", "on the dark side", "shaded"}
     assert ask(page, column=9, row=7)["wrong"]
     assert page.locator("#pixel-life .wrong").count() == 1
 
