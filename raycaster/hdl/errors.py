@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+import linecache
 import re
 import traceback
 from collections.abc import Iterator
@@ -35,7 +36,10 @@ def fault_in_block(error: BaseException, converters: tuple[str, ...] = ()) -> st
     if not any(module.startswith("myhdl.") for module in modules):
         return None
     reason = re.sub(r"^\w+Error: ", "", str(error)) or "MyHDL does not support this"
-    if type(error).__module__.partition(".")[0] != "myhdl":
+    if isinstance(error, AssertionError) and not str(error):
+        stated = linecache.getline(frames[-1][0].f_code.co_filename, frames[-1][1])
+        reason = f"MyHDL expects {stated.strip().removeprefix('assert ')} here"
+    elif type(error).__module__.partition(".")[0] != "myhdl":
         reason += f" ({type(error).__name__})"
     # While MyHDL analyses a process, the place is in the syntax tree; while code runs, it is in a frame.
     # A signal whose making failed has no attributes.

@@ -77,12 +77,16 @@ def process(statements: str) -> str:
         ),
         (
             "joined = ConcatSignal(a)\n" + process("result.next = joined"),
-            "MyHDL does not support this (AssertionError)",
+            "MyHDL expects len(args) >= 2 here",
         ),
         ("def double(x):\n    result.next = x\n" + process("double(a)"), "a function cannot drive"),
         (
             "def flip(x):\n    return ~x\n" + process("result.next = flip(a > b)"),
             "the result is one bit in Verilog, and may be -2 to -1 here",
+        ),
+        (
+            "def same(x):\n    return x + 0\n" + process("result.next = same(~(a > b))"),
+            "x holds 0 to 1 in Verilog, and may be -2 to -1 here",
         ),
         (
             "größe = unsigned(4)\n"
