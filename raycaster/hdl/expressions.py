@@ -548,8 +548,8 @@ class Expressions:
                 around, held = self.range(argument), _all_of(bits, signed)
                 texts.append(self.text(argument))
                 if _either(around, held) != held:
-                    self.refuse(node, f"{formal} holds {held.low} to {held.high} in Verilog, and may be {around.low} to "
-                                f"{around.high} here; assign the argument to a signal first")  # fmt: skip
+                    self.refuse(node, f"{formal} holds {held.low} to {held.high} in Verilog, and may be {around.low} "
+                                f"to {around.high} here; assign the argument to a signal first")  # fmt: skip
             return f"{name}({', '.join(texts)})"
         name = getattr(function, "__name__", ast.unparse(node.func))
         self.refuse(node, f"Verilog has no {name}; write if and else" if name in ("max", "min", "abs") else
