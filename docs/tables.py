@@ -117,6 +117,7 @@ COVERED = "lines {lines[0]:,} of {lines[1]:,}, conditions {conditions[0]:,} of {
 CHECKS = {
     "soak-seed": ("random scenes, surfaces of all kinds, full size", "seed", SOAKED),
     "soak-exact": ("random scenes, turned cameras and surfaces of all kinds, full size", "exact", SOAKED),
+    "soak-light": ("random scenes with lights, turned cameras and surfaces of all kinds, 64x48", "exact", SOAKED),
     "soak-beam": ("random scenes, turned cameras and surfaces of all kinds, full size", "beam", SOAKED),
     "prove": ("proofs", "as the table below says", "{proved} of {proofs} proved"),
     "mutate": (
