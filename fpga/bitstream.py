@@ -11,8 +11,8 @@ from __future__ import annotations
 import argparse
 import json
 import re
+import shlex
 import shutil
-import subprocess
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -38,7 +38,6 @@ from raycaster.options import (
     CommandParser,
     add_configuration_options,
     add_scene_argument,
-    command_line,
     given_options,
 )
 from raycaster.outcomes import add_keep_option, keep
@@ -54,10 +53,6 @@ GAME_ENGINE = "exact"
 
 PACK_TIMEOUT = 600
 """Time limit of the packer, in seconds."""
-
-LOADER = "openFPGALoader"
-LOAD_TIMEOUT = 300
-"""Time limit of the loader, in seconds."""
 
 
 @dataclass(frozen=True)
@@ -270,34 +265,6 @@ def _is_net(name: str, net: str) -> bool:
     return net in re.split(r"[ $.]", name)
 
 
-def load(board: OpenBoard, made: Path) -> None:
-    """Load a bitstream into the board's chip, without checking the board's output.
-
-    Args:
-        board: connected board.
-        made: bitstream.
-
-    Raises:
-        UserError: there is no bitstream, or openFPGALoader is missing or failed.
-    """
-    if not made.exists():
-        raise UserError(f"{made}: does not exist; run {command_line('bitstream', options={'board': board.name})} first")
-    loader = find_program(LOADER)
-    if loader is None:
-        raise UserError(
-            f"{LOADER}, which loads {made} onto the board, is not on the path; install it (Debian: apt-get install "
-            "openfpgaloader)"
-        )
-    try:
-        done = run_program([loader, *board.loader, str(made)], Path.cwd(), LOAD_TIMEOUT)
-    except subprocess.TimeoutExpired:
-        raise UserError(f"{LOADER} took more than {LOAD_TIMEOUT:g} s on the {board.title}") from None
-    if done.returncode:
-        said = [line.strip() for line in (done.stderr + done.stdout).splitlines() if line.strip()]
-        reason = said[0] if said else f"exit code {done.returncode}"
-        raise UserError(f"{LOADER} failed on the {board.title}: {reason}")
-
-
 def show(board: OpenBoard, outcome: Outcome, console: Console) -> None:
     """Print the used cells and the reached clocks."""
     table = Table("cell", "used", "available", "share", title=f"{board.name}, {board.chip}")
@@ -319,7 +286,6 @@ def command_parser() -> CommandParser:
     parser.add_argument("--board", default="ulx3s", help=f"board: {', '.join(board_names(OpenBoard))} (%(default)s)")
     add_scene_argument(parser, "scene to show (default: mirror_room)")
     parser.add_argument("--game", action="store_true", help="build the game on a processor instead of a scene")
-    parser.add_argument("--flash", action="store_true", help="load the board's bitstream into its chip")
     parser.add_argument("--output", type=Path, default=Path("build/bitstream"), help="output directory (%(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="seed of the placement (default: %(default)s)")
     add_fix_option(parser)
@@ -360,10 +326,6 @@ def main(argv: Sequence[str] | None = None) -> None:
     console = Console()
     output, flow = arguments.output / board.name, FLOWS[board.flow]
     made = output / f"{board.name}.{flow.bitstream}"
-    if arguments.flash:
-        load(board, made)
-        console.print(f"{made} is loaded into the {board.title}; its picture on a board was never seen", soft_wrap=True)
-        return
     design = _design(arguments, board, console)
     outcome = make_bitstream(board, design, output, seed=arguments.seed, console=console)
     show(board, outcome, console)
@@ -384,4 +346,5 @@ def main(argv: Sequence[str] | None = None) -> None:
             f"too slow: {', '.join(outcome.missed)}; the reports are in {output}; another {as_typed('seed')} may help"
         )
     console.print(f"{made}, {made.stat().st_size:,} bytes: {design.configuration.name} with {design.path}")
-    console.print(f"{LOADER} {' '.join(board.loader)} {made}", soft_wrap=True)
+    loader = shlex.join(["openFPGALoader", *board.loader, str(made)])
+    console.print(f"to load it, which was never done: {loader}", soft_wrap=True)

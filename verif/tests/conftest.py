@@ -11,7 +11,6 @@ import shutil
 import subprocess
 import sysconfig
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -271,14 +270,6 @@ def make(*words: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
     """Run make as a person would, even if another make runs the tests."""
     command = ["make", *words]
     return subprocess.run(command, cwd=cwd, env=outside_make(), capture_output=True, text=True, check=False)
-
-
-@pytest.fixture
-def stand_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str], None]:
-    """Return a function that writes a shell script with the name of a program, in the only folder that is searched."""
-    monkeypatch.setattr("raycaster.tools._search_path", lambda: f"{tmp_path / 'bin'}:/usr/bin:/bin")
-
-    return partial(write_script, tmp_path / "bin")
 
 
 def faulty(text: str, right: str, wrong: str) -> str:
