@@ -25,11 +25,10 @@ fit area: EXTRAS := fpga
 bitstream: EXTRAS := fpga,play
 report: EXTRAS := fpga,report
 docs: EXTRAS := docs,play
-coverage: EXTRAS := coverage
 prove: EXTRAS := formal
 sim: EXTRAS := $(if $(filter-out 0,$(value GATES)),formal)
 mutate: EXTRAS := formal,test
-lint test gate verify-all: EXTRAS := formal,fpga,report,coverage,play,docs,test
+lint test gate verify-all: EXTRAS := formal,fpga,report,play,docs,test
 
 .PHONY: help $(COMMANDS) $(CHECKS) test lint clean
 .NOTPARALLEL:

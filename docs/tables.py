@@ -113,7 +113,7 @@ def _error_and_time(kept: Outcome) -> str:
 
 
 SOAKED = "{scenes:,} scenes, {pixels:,} pixels, {wrong_vs_golden} wrong"
-COVERED = "lines {lines[0]:,} of {lines[1]:,}, conditions {conditions[0]:,} of {conditions[1]:,}"
+COVERED = ", ".join(f"{{{name}[reached]:,}} of {{{name}[all]:,}} ({name})" for name in ENGINES)
 CHECKS = {
     "soak-seed": ("random scenes, surfaces of all kinds, full size", "seed", SOAKED),
     "soak-exact": ("random scenes, turned cameras and surfaces of all kinds, full size", "exact", SOAKED),
@@ -124,9 +124,7 @@ CHECKS = {
         "faults planted in modules", "the modules' leaf tests",
         "{caught:,} caught in {modules} modules, {surviving:,} not",
     ),
-    "coverage": ("code coverage", "seed", COVERED),
-    "coverage-exact": ("code coverage", "exact", COVERED),
-    "coverage-beam": ("code coverage", "beam", COVERED),
+    "coverage": ("lines and branches reached in frames and benches", "each", COVERED),
     "verify-all": ("all tests, slow ones included", "each", "{passed:,} tests passed, {skipped} were skipped"),
 }  # fmt: skip
 """Rows of the table of long checks by the file of their figures: the check, the engine, and a format of the figures."""

@@ -500,8 +500,6 @@ _FEATURES = {
     "--trace": ("TRACE", "TRACE_VCD"),
     "--trace-fst": ("TRACE", "TRACE_FST"),
     "--coverage-line": ("COVERAGE",),
-    "--coverage-expr": ("COVERAGE",),
-    "--coverage-toggle": ("COVERAGE",),
 }
 """Flags that change the contents of Verilator's library, and their macros; no flag takes a value."""
 

@@ -103,7 +103,7 @@ completion.main(["bash"])
 def test_help_and_completions_without_an_extra():
     """Each command shows its help without any package that only an extra installs."""
     missing = {
-        "adjustText", "cocotb_coverage", "distributed", "elftools", "litex", "matplotlib", "playwright", "pygame",
+        "adjustText", "distributed", "elftools", "litex", "matplotlib", "playwright", "pygame",
         "pygraphviz", "sphinx", "wavedrom", "ziglang",
     }  # fmt: skip
     command = [sys.executable, "-c", WITHOUT_EXTRAS.format(missing=missing)]

@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: MIT
-"""Code and functional coverage of the hardware."""
