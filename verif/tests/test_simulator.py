@@ -7,13 +7,12 @@ import importlib.metadata
 import os
 import shutil
 import subprocess
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import pytest
-from conftest import BUILD, write_script
+from conftest import write_script
 
 import raycaster.rtl
 from raycaster.configuration import configure
@@ -23,7 +22,6 @@ from raycaster.sim.ensure_tools import ensure, find
 from raycaster.sim.simulator import (
     MODELS_VARIABLE,
     SimulationError,
-    Tool,
     build_model,
     convert,
     system_verilator,
@@ -144,46 +142,6 @@ def test_builds_once(tmp_path, own_models, monkeypatch):
     for mark in tmp_path.glob("model/*-icarus-*/made"):
         mark.unlink()
     assert build()
-
-
-def test_models_share_a_library(tmp_path, own_models, monkeypatch):
-    """The library shared by Verilator's models is compiled once; another compiler flag needs no other library."""
-    asked, compiler = [], partial(simulator._compiler, simulator.find_tool("verilator"), BUILD / "model")
-
-    def recorded(tool: Tool, parent: Path, *arguments: Sequence[str]) -> tuple[list[str], list[str]]:
-        # Other tests and commands use the same library, so it is usually built already.
-        asked.append(arguments)
-        return compiler(*arguments)
-
-    monkeypatch.setattr(simulator, "_compiler", recorded)
-    directory = build_model(TINY, build=tmp_path).directory
-    assert (directory / "bench").exists()
-    assert list(directory.glob("*.o")) == []
-    # The compiler says if it cannot use the precompiled headers.
-    assert "invalid-pch" not in directory.with_suffix(".log").read_text()
-    [(features, flags)] = asked
-    (command, library), (another, other) = (compiler(features, [*flags, *more]) for more in ((), ("-O0",)))
-    assert ("-include" in command, "-include" in another) == (True, False)
-    assert library == other
-    assert {Path(path).name for path in library} >= {"verilated.o", "verilated_vpi.o"}
-    assert [path for path in library if path.endswith("_c.o")] == []
-
-
-def test_unused_models_are_removed(tmp_path, own_models):
-    """A new build removes models unused for a week; finding a model counts as use."""
-
-    def build(**options) -> Path:
-        return build_model(
-            configure(screen="tiny", units=4, rectangles=1, **options), "icarus", build=tmp_path
-        ).directory
-
-    found, forgotten = build(), build(reflections=0)
-    for directory in (found, forgotten):
-        os.utime(directory / "made", (0, 0))
-    assert build() == found
-    build(reflections=2)
-    assert found.exists()
-    assert not forgotten.exists()
 
 
 def test_failed_build_does_not_count(tmp_path):
