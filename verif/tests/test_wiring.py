@@ -313,7 +313,7 @@ FAULTS = [
     (GAME, "game/board_design.v", "buttons[5], buttons[4]", "buttons[4], buttons[5]"),
     (GAME, "game/board_design.v", "buttons[0] | buttons[1]", "buttons[0]"),
     (TANG, "gowin/link_pins.v", ".I(link[2]), .O(link_p[2])", ".I(~link[2]), .O(link_p[2])"),
-    (TANG, "gowin/board_pll.v", ".RESETN(locked)", ".RESETN(1'b0)"),
+    (TANG, "gowin/board_pll.v", "fifth (.HCLKIN(fast), .RESETN(locked)", "fifth (.HCLKIN(fast), .RESETN(1'b0)"),
     (TANG, "tang_nano_20k/board.toml", '"36", "38", "40", "34"', '"38", "36", "40", "34"'),
     (TANG, "tang_nano_20k/board.toml", 'forward = "btn[0]"', 'forward = "~btn[0]"'),
     (ICE, "parallel_board.v", "locked & run", "locked"),
