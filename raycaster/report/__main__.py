@@ -27,7 +27,7 @@ from raycaster.report.points import Sweep
 from raycaster.report.stability import stability_chapter
 from raycaster.sim.simulator import SimulationError
 
-SCENES = Path("scenes")
+SCENES = Path("raycaster/scenes")
 """Folder of scenes, relative to the current directory so that the commands of points name the files."""
 
 ENOUGH_WORLDS = 200

@@ -59,8 +59,8 @@ def test_a_small_report(tmp_path, monkeypatch):
             return list(csv.DictReader(file))
 
     monkeypatch.setattr(points, "measure", cells)
-    scenes = tmp_path / "scenes"
-    scenes.mkdir()
+    scenes = tmp_path / "raycaster" / "scenes"
+    scenes.mkdir(parents=True)
     for name in ("corners", "mirror_room"):
         (scenes / f"{name}.toml").write_text(find_scene(name).read_text())
     monkeypatch.chdir(tmp_path)
@@ -75,9 +75,8 @@ def test_a_small_report(tmp_path, monkeypatch):
     again = designs.of_kept(json.loads(json.dumps(figures["designs"])))
     plots.save(designs.work_precision(again, "frame_ms"), tmp_path / "again.svg")
     assert (tmp_path / "again.svg").read_text() == (tmp_path / "work_frame_ms.svg").read_text()
-    assert picture("raycaster/scenes/corners.toml", 4, "nearest", 1).command in {
-        row["command"] for row in rows("pictures")
-    }
+    corners = picture("raycaster/scenes/corners.toml", 4, "nearest", 1)
+    assert corners.command in {row["command"] for row in rows("pictures")}
     assert [row["left out"] for row in rows("left")][::9] == ["", "hidden rectangles"]
     best = rows("designs")
     assert {one["design"].split()[0] for one in best} == {"seed", "exact,", "beam"}
