@@ -4,19 +4,19 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from raycaster.complaints import as_typed
-from raycaster.configuration import COORDINATE_BITS, LOOKS, MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
+from raycaster.configuration import LOOKS, MOST_RECTANGLES, Configuration, configure
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.fit.choice import kept_choice
 from raycaster.fit.unneeded import at_the_edge, covered, label, needed, unreachable, without_mirrors
-from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
+from raycaster.fixed import FixedRectangle, FixedScene
 from raycaster.golden.world import Rectangles
 from raycaster.output import Console, Table
 from raycaster.scene import Rectangle, Scene
@@ -28,17 +28,6 @@ SCOPES = {
 FIT = "fit"
 """Scope that stands for everything that `raycaster.fpga.fit` chose."""
 
-BOUNDS = {"u_low": 0, "v_low": 0, "u_high": WORLD_SIZE - 1, "v_high": WORLD_SIZE - 1}
-"""Coordinate of the world's edge for each bound of a rectangle."""
-
-
-@dataclass(frozen=True)
-class Omission:
-    """A part that the hardware does without."""
-
-    what: str
-    reason: str
-
 
 @dataclass(frozen=True)
 class Fixing:
@@ -47,12 +36,12 @@ class Fixing:
     Attributes:
         design: the design.
         general: a design that shows the same scene, and any other.
-        omissions: parts of `general` that `design` does without.
+        omissions: rectangles, and tests of them, that `design` does without, each with the reason.
     """
 
     design: Design
     general: Design
-    omissions: tuple[Omission, ...]
+    omissions: Sequence[tuple[str, str]]
 
 
 def add_fix_option(parser: argparse.ArgumentParser) -> None:
@@ -140,7 +129,7 @@ def fix(path: Path, options: Mapping[str, Any], scope: str) -> Fixing:
     kept = {name: getattr(general.configuration, name) for name in ("engine", "rows", *LOOKS)}
     given = {**options, **kept, "reflections": reflections, "fixed": fixed}
     design = Design(path, scene, configure(**given), reflections)
-    return Fixing(design, general, tuple(_omissions(design, general, fixed, reasons)))
+    return Fixing(design, general, _omissions(scene, reasons, with_shadows=bool(fixed.shadows)))
 
 
 def _reasons(general: Design, scope: str) -> list[dict[int, str]]:
@@ -205,68 +194,23 @@ def general_design(path: Path, options: Mapping[str, Any]) -> Design:
     return design_for(path, {**options, **underrun, "rectangles": MOST_RECTANGLES})
 
 
-def _omissions(
-    design: Design, general: Design, fixed: FixedScene, reasons: Sequence[Mapping[int, str]]
-) -> Iterator[Omission]:
-    """Yield omissions in the order in which a picture is made: storage, comparisons, multiplications."""
-    scene, small, large = design.scene, design.configuration, general.configuration
-    words = (4 if large.patterns else 3) * large.rectangles
-    yield Omission(f"rectangle memory: {words} words, three copies each", "rectangles are constants")
-    yield Omission("sorter of corners", "constants are already sorted")
-    if fixed.camera:
-        yield Omission("memory of camera and background", "they are constants")
-    yield from _rectangles(scene, reasons, bool(fixed.shadows))
-    if spare := large.rectangles - len(scene.rect):
-        yield Omission(f"{spare} of {large.rectangles} entries for rectangles", f"the scene has {len(scene.rect)}")
-    if large.reflections > small.reflections:
-        yield Omission("reflection", "the scene has none" if not small.reflections else "the scene has fewer")
-    if small.divider_bits != large.divider_bits or small.units != large.units:
-        yield Omission(*_work(small, large))
-    yield from _constant_fields(small, fixed)
-
-
-def _rectangles(scene: Scene, reasons: Sequence[Mapping[int, str]], with_shadows: bool) -> Iterator[Omission]:
+def _omissions(scene: Scene, reasons: Sequence[Mapping[int, str]], *, with_shadows: bool) -> list[tuple[str, str]]:
+    """Return the rectangles that no pass needs, and then those that only some passes do, with the reasons."""
     passes = ["of primary rays", *(f"of the {which}reflection" for which in ("", "second ", "third ", "fourth "))]
     if with_shadows:
         passes = passes[: len(reasons) // 2]
         passes += [f"for shadows {one}" for one in passes]
     nowhere = set.intersection(*map(set, reasons))
-    for index in sorted(nowhere):
-        yield Omission(label(scene, index), reasons[0][index])
+    found = [(label(scene, index), reasons[0][index]) for index in sorted(nowhere)]
     for name, one in zip(passes, reasons, strict=False):
-        for index in sorted(set(one) - nowhere):
-            yield Omission(f"tests {name} against {label(scene, index)}", one[index])
-
-
-def _work(small: Configuration, large: Configuration) -> tuple[str, str]:
-    fewer = f"{large.units - small.units} of {large.units} units"
-    reason = f"{small.units} meet the row budget with {small.group_cycles} cycles per group"
-    if small.divider_bits != large.divider_bits:
-        reason += f", at {small.divider_bits} quotient bits per cycle"
-    return fewer, reason
-
-
-def _constant_fields(config: Configuration, fixed: FixedScene) -> Iterator[Omission]:
-    """Yield omissions for values that all rectangles share, which are not stored or passed on."""
-    axes = set(fixed.column("axis"))
-    for axis in sorted({0, 1, 2} - axes):
-        yield Omission(f"rays against planes on {'xyz'[axis]}", "no rectangle is on that axis")
-    for name, edge in BOUNDS.items():
-        if set(fixed.column(name)) == {edge}:
-            yield Omission(f"comparison with {name}", "every rectangle reaches the world's edge there")
-    bits = dict.fromkeys(("position", *BOUNDS), COORDINATE_BITS) | {"colour": 24}
-    bits |= {"mirror": 3} if config.materials else {}
-    bits |= {"kind": 2, "cell": 3, "colour_2": 24} if config.patterns else {}
-    for name, width in bits.items():
-        same = width - varying_bits(fixed.column(name)).bit_count()
-        if same:
-            yield Omission(f"{same} of {width} bits of {name}", "the same in every rectangle")
+        found += [(f"tests {name} against {label(scene, index)}", one[index]) for index in sorted(set(one) - nowhere)]
+    return found
 
 
 def show(fixing: Fixing, console: Console) -> None:
     """Print the omissions with their reasons."""
     title = f"{fixing.design.name}: left out of {fixing.general.configuration.name}"
     table = Table("left out", "reason", title=title, texts=("reason",))
-    for omission in fixing.omissions:
-        table.add_row(omission.what, omission.reason)
+    for row in [("memory and sorter of rectangles", "rectangles are constants"), *fixing.omissions]:
+        table.add_row(*row)
     console.print(table)
