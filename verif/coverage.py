@@ -32,7 +32,7 @@ from raycaster.sim.simulator import (
     build_model,
     run_bench,
 )
-from raycaster.verif.campaign import bench_digest
+from raycaster.verif.soak.soak import bench_digest
 
 # One design per engine that every bench can run, at full size, so that the counters run through their range. The seed
 # engine has 16 units, not 32, and so a budget of 159 cycles per group. All 12 rectangles with two reflections take 202

@@ -52,7 +52,6 @@ COMMANDS: Mapping[str, Command] = {
     "verify mutate": Command("raycaster.verif.mutation.mutate", "plant faults that the tests must notice", "formal"),
     "verify gate": Command("raycaster.verif.gate", "check that tests still notice planted faults", "test"),
     "verify coverage": Command("raycaster.verif.coverage", "list lines and branches that no frame or bench reaches"),
-    "verify upsets": Command("raycaster.verif.upsets.upsets", "disturb a running design and check that it recovers"),
     "verify dvi": Command("raycaster.verif.dvi.watch", "decode and compare a board's video output"),
 }
 

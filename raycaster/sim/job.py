@@ -6,7 +6,6 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
-from collections.abc import Mapping, Sequence
 from typing import Any
 
 from raycaster.configuration import Configuration, configure
@@ -38,9 +37,6 @@ class Job:
 
     stiff: bool = False
     """True if the seeds are indices into the stiff catalogue instead."""
-
-    registers: Mapping[str, Sequence[str]] = dataclasses.field(default_factory=dict)
-    """Names of registers, by module of the design, for a bench that writes them."""
 
     buttons: tuple[int, ...] = ()
     """Buttons held from each frame's vertical sync on, one bit each, for a system with a processor."""
