@@ -305,9 +305,7 @@ def _design(arguments: argparse.Namespace, board: OpenBoard, console: Console) -
         scene = arguments.scene or find_scene("mirror_room")
         return design_of(scene, options, arguments.fix, console, **board.configuration)
     if arguments.scene or arguments.fix:
-        raise UserError(
-            f"game: the game sets up its own scene; leave out the scene, {as_typed('fix')} and {as_typed('fit')}"
-        )
+        raise UserError(f"game: the game sets up its own scene; leave out the scene and {as_typed('fix')}")
     configuration = configure(**{"engine": GAME_ENGINE} | board.configuration | options)
     return ProcessorDesign(build_firmware(arguments.output.absolute() / "firmware").words, configuration)
 

@@ -15,7 +15,6 @@ from raycaster.convert.digest import verilog_digest
 from raycaster.design import Design, packaged_for
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
-from raycaster.fit.choice import BUILD, keep_choice
 from raycaster.fit.fixing import SCOPES, Fixing, fix, general_design, show
 from raycaster.fpga.cells import FAMILIES, Area, measure
 from raycaster.golden.engines import model_of
@@ -156,14 +155,14 @@ def show_all(found: Sequence[Candidate], areas: Sequence[Area], best: int, conso
 def search(
     path: Path, options: Mapping[str, Any], scope: str, error: float | None, output: Path, console: Console
 ) -> list[dict[str, Any]]:  # fmt: skip
-    """Find, show and keep the smallest design for a scene.
+    """Find and show the smallest design for a scene.
 
     Args:
         path: scene file.
         options: configuration options, as given.
         scope: part of the scene that may be built in.
         error: largest allowed share of wrong pixels; None for any.
-        output: directory for the choice and the synthesised designs.
+        output: directory for the synthesised designs.
         console: console for the results.
 
     Returns:
@@ -183,9 +182,8 @@ def search(
     chosen = found[best]
     assert chosen.fixing  # only the general designs have none
     show(chosen.fixing, console)
-    kept = keep_choice(path, chosen.options, scope, output)
-    console.print(f"{chosen.configuration.name}, kept in {kept}", soft_wrap=True)
-    console.print(f"to build it: {command_line('verilog', path, {'fit': True})}", soft_wrap=True)
+    command = command_line("verilog", path, {**chosen.options, "fix": scope})
+    console.print(f"{chosen.configuration.name}; to build it: {command}", soft_wrap=True)
     return [
         {"configuration": one.configuration.name, "engine": one.configuration.engine, "scope": one.scope,
          "luts": area.tables, "registers": area.registers, "multipliers": area.multipliers, "wrong_share": one.error}
@@ -201,7 +199,7 @@ def command_parser() -> CommandParser:
     parser.add_argument(
         "--fix", default="all", metavar="SCOPE", help=f"part to build in: {' or '.join(SCOPES)} (default: %(default)s)"
     )
-    parser.add_argument("--output", type=Path, default=BUILD, metavar="DIR", help="output directory (%(default)s)")
+    parser.add_argument("--output", type=Path, default=Path("build/fit"), help="output directory (%(default)s)")
     add_configuration_options(parser)
     add_keep_option(parser)
     return parser

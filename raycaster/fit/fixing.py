@@ -14,7 +14,6 @@ from raycaster.complaints import as_typed
 from raycaster.configuration import LOOKS, MOST_RECTANGLES, Configuration, configure
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
-from raycaster.fit.choice import kept_choice
 from raycaster.fit.unneeded import at_the_edge, covered, label, needed, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene
 from raycaster.golden.world import Rectangles
@@ -25,8 +24,6 @@ SCOPES = {
     "rects": "rectangles are constants, the camera is live",
     "all": "camera, background and reflections are constants too",
 }
-FIT = "fit"
-"""Scope that stands for everything that `raycaster.fpga.fit` chose."""
 
 
 @dataclass(frozen=True)
@@ -45,12 +42,9 @@ class Fixing:
 
 
 def add_fix_option(parser: argparse.ArgumentParser) -> None:
-    """Add `--fix`, and `--fit` as one more scope."""
+    """Add `--fix`."""
     scopes = "; ".join(f"{name}: {meaning}" for name, meaning in SCOPES.items())
     parser.add_argument("--fix", metavar="SCOPE", help=f"build the scene into the hardware; {scopes}")
-    parser.add_argument(
-        "--fit", dest="fix", action="store_const", const=FIT, help="build the design that `raycaster fit` chose"
-    )
 
 
 def design_of(path: Path, options: Mapping[str, Any], scope: str | None, console: Console, **defaults: Any) -> Design:
@@ -59,7 +53,7 @@ def design_of(path: Path, options: Mapping[str, Any], scope: str | None, console
     Args:
         path: the scene file.
         options: options of the configuration that were given.
-        scope: one of `SCOPES`, `FIT`, or None.
+        scope: one of `SCOPES`, or None.
         console: console to show it on.
         defaults: values for options that were not given; see `design_for`.
 
@@ -68,16 +62,7 @@ def design_of(path: Path, options: Mapping[str, Any], scope: str | None, console
     """
     if scope is None:
         return design_for(path, options, defaults)
-    chosen = defaults | dict(options)
-    if scope == FIT:
-        if options:
-            raise UserError(
-                f"{min(options)}: {as_typed('fit')} uses the options chosen for the scene; leave out "
-                f"{as_typed(min(options))}"
-            )
-        chosen, scope = kept_choice(path)
-        chosen = defaults | chosen
-    fixing = fix(path, chosen, scope)
+    fixing = fix(path, defaults | dict(options), scope)
     show(fixing, console)
     return fixing.design
 

@@ -20,8 +20,7 @@ from raycaster.convert.write import write_verilog
 from raycaster.design import design_for
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError
-from raycaster.fit.choice import keep_choice, kept_choice
-from raycaster.fit.fixing import FIT, SCOPES, design_of, fix, fixed_rectangle
+from raycaster.fit.fixing import SCOPES, fix, fixed_rectangle
 from raycaster.fit.unneeded import at_the_edge, covered, needed, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene
 from raycaster.fpga import fit as search
@@ -328,7 +327,7 @@ def test_more_rectangles_than_the_default_has(tmp_path):
 
 
 @pytest.mark.slow
-def test_the_smallest_is_kept_and_built(tmp_path, capfd):
+def test_the_smallest_is_found(tmp_path, capfd):
     """The complete search works on a small scene and one engine."""
     output = tmp_path / "fit"
     console = Console(width=120)
@@ -336,24 +335,6 @@ def test_the_smallest_is_kept_and_built(tmp_path, capfd):
     shown = capfd.readouterr().out
     assert re.search(r"exact +all .* fit", shown)
     assert "rectangles are constants" in shown
-    options, scope = kept_choice(SMALL_SCENE, output)
-    assert (options, scope) == ({"engine": "exact", "screen": "tiny"}, "all")
-
-
-def test_a_choice_for_another_scene_is_refused(tmp_path, monkeypatch):
-    scene = tmp_path / "scene.toml"
-    scene.write_text(SMALL_SCENE.read_text())
-    monkeypatch.chdir(tmp_path)
-    with pytest.raises(UserError, match=r"nothing was chosen for .*; run raycaster fit"):
-        design_of(scene, {}, FIT, Console(quiet=True))
-    keep_choice(scene, {"engine": "exact", "screen": "tiny"}, "rects")
-    design = design_of(scene, {}, FIT, Console(quiet=True))
-    assert design == fix(scene, {"engine": "exact", "screen": "tiny"}, "rects").design
-    with pytest.raises(UserError, match="leave out --units"):
-        design_of(scene, {"units": "4"}, FIT, Console(quiet=True))
-    (tmp_path / "build" / "fit" / "other.json").write_text("{")
-    with pytest.raises(UserError, match="is not what the command fit wrote"):
-        design_of(tmp_path / "other.toml", {}, FIT, Console(quiet=True))
-    scene.write_text(SMALL_SCENE.read_text().replace("20, 250", "21, 250"))
-    with pytest.raises(UserError, match="is not the scene that"):
-        design_of(scene, {}, FIT, Console(quiet=True))
+    assert f"to build it: raycaster verilog {SMALL_SCENE} --engine exact --screen tiny --fix all" in shown.replace(
+        "\n", ""
+    )
