@@ -22,7 +22,6 @@ import re
 import shutil
 import subprocess
 import sys
-import time
 import tomllib
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
@@ -123,8 +122,6 @@ class Result:
 
     module: str
     recording: str
-    cycles: int
-    seconds: float
     mutants: list[Mutant]
 
 
@@ -150,12 +147,11 @@ class Recording:
         Raises:
             MutationError: there is no place for a fault, or the replay fails without one.
         """
-        begin = time.monotonic()
         mutants = self.plant(count, seed)
         if not mutants:
             raise MutationError(f"{self.module} has no cell that a fault could be in")
         self._replay(mutants)
-        return Result(self.module, self.name, self._leaf["cycles"], time.monotonic() - begin, mutants)
+        return Result(self.module, self.name, mutants)
 
     def _read(self) -> list[str]:
         return [
@@ -390,26 +386,21 @@ class Job:
     seed: int
 
     @property
-    def name(self) -> str:
-        """Name of the recording."""
-        return _recording_of(self.test)
-
-    @property
     def directory(self) -> Path:
         """Directory of the recording."""
-        return self.build / "recordings" / self.name
+        return self.build / "recordings" / _recording_of(self.test)
 
     def place(self) -> Path:
         """Return the file in which the result is kept."""
         files = sorted(path for path in self.directory.iterdir() if path.is_file())
         tools = inspect.getsource(Recording), SOURCES / "replay.cpp"
         key = digest(self.mutants, self.seed, [path.name for path in files], *files, *tools)
-        return self.build / "results" / f"{self.name}-{key}.pickle"
+        return self.build / "results" / f"{self.directory.name}-{key}.pickle"
 
     def run(self) -> Result | str:
         """Return the result, or an error message."""
         try:
-            recording = Recording(self.directory, self.build / "work" / self.name)
+            recording = Recording(self.directory, self.build / "work" / self.directory.name)
             if recording.module != self.module:
                 return f"{self.test}: expected a test of {self.module}, got one of {recording.module}"
             return recording.run(self.mutants, self.seed)
@@ -441,8 +432,8 @@ def mutate(
 
     def finished(job: Job, found: Result | str) -> None:
         """Print a line for each recording, for a log without a progress bar."""
-        said = found if isinstance(found, str) else f"{found.seconds:.0f} s"
-        console.print(f"{job.name}: {said}", soft_wrap=True)
+        said = found if isinstance(found, str) else f"{share_caught(by_module([found])[job.module]):.1%} caught"
+        console.print(f"{job.directory.name}: {said}", soft_wrap=True)
 
     kept = Kept(Job.place, arguments.fresh, complete=lambda found: isinstance(found, Result))
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
@@ -499,5 +490,6 @@ def main(argv: list[str] | None = None) -> int:
     usual = (arguments.mutants, arguments.seed) == (MUTANTS, SEED) and KEPT.exists()
     before = kept_outcome(KEPT).figures.get("by_module", {}) if usual else {}
     complaint = failures + complaints(counts, before)
-    console.print("\n".join(complaint), style="red", soft_wrap=True)
+    for line in complaint:
+        console.print(line, style="red", soft_wrap=True)
     return 1 if complaint else 0
