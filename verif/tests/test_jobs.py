@@ -21,6 +21,7 @@ from rich.console import Console
 from raycaster.errors import UserError
 from raycaster.jobs import Kept, executors, processes, run_jobs
 from raycaster.verif import everything
+from raycaster.verif.seeds import VARIABLE
 
 
 @dataclass(frozen=True)
@@ -124,6 +125,7 @@ def test_all_is_resumed(tmp_path, monkeypatch, capsys):
         subprocess.run([*git, *words], check=True)
     monkeypatch.setattr(everything.ensure_tools, "ensure", lambda tool: None)
     monkeypatch.setattr(everything, "TESTS", clone / "verif" / "tests")
+    monkeypatch.delenv(VARIABLE, raising=False)
     monkeypatch.setenv("RAN", str(ran))
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # each run starts quickly with the one that it needs
     monkeypatch.setenv("PYTEST_PLUGINS", "xdist.plugin")
