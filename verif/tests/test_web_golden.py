@@ -18,7 +18,6 @@ from raycaster.errors import UserError
 from raycaster.golden.catalogue import catalogue
 from raycaster.golden.engines import model_of
 from raycaster.golden.picture import shown
-from raycaster.golden.rays import primary_slopes
 from raycaster.program import scene_words
 from raycaster.registers import register_map
 from raycaster.scene import load_scene, packaged_scenes
@@ -31,11 +30,6 @@ from raycaster.web import wasm
 from raycaster.web.wasm import golden_wasm
 
 WORDS = 1024
-LIT, DARK_SIDE = -1, -2
-"""Values of `Bounce::shadow`, besides the rectangle that shades."""
-
-BOUNCE = ("winner", "numerator", "denominator", "x", "y", "z", "colour", "quarters", "shadow")
-"""Members of `Bounce`."""
 
 QUOTIENTS = [(bits, rounding) for bits in (0, 3, 8) for rounding in ("truncate", "nearest")]
 ENGINES = [
@@ -110,14 +104,6 @@ def golden() -> Golden:
         lambda address, size: bytes(memory.read(store, address, address + size)),
         lambda address, data: memory.write(store, data, address),
     )
-
-
-def bounces(golden: Golden, column: int, row: int) -> list[dict[str, int]]:
-    """Return the bounces of a pixel's ray, by the names of `Bounce`."""
-    count = golden.call("golden_ray", column, row)
-    data = golden.read(golden.call("golden_bounces"), 8 * len(BOUNCE) * count)
-    rows = np.frombuffer(data, "<i8").reshape(-1, len(BOUNCE)).tolist()
-    return [dict(zip(BOUNCE, one, strict=True)) for one in rows]
 
 
 def random_words(rng: np.random.Generator, config: Configuration) -> list[tuple[int, int]]:
@@ -196,57 +182,7 @@ def test_does_not_run(golden):
         words[control.address] &= ~mask
         golden.load(words.items())
         assert golden.draw(config).any() == runs
-        assert bool(bounces(golden, 0, 0)) == runs
-
-
-def true_bounces(config: Configuration, scene: LiveScene, slopes: np.ndarray) -> list[list[dict[str, object]]]:
-    """Return what the golden model knows of the bounces of each ray, by the names of `Bounce`, up to the ray's end."""
-    rays = scene.rectangles, scene.camera, scene.background, slopes, scene.reflections
-    trace = model_of(config).trace(*rays, light=scene.light, keep=True)
-    found = [[] for _ in slopes]
-    for depth, bounce in enumerate(trace.bounces):
-        distances = bounce.depths if config.facts.divides else bounce.numerators
-        for ray in np.flatnonzero(bounce.alive):
-            winner = int(trace.winners[depth][ray])
-            one = {"winner": winner, "colour": int.from_bytes(trace.seen[depth][ray].tobytes()), "shadow": LIT}
-            if winner >= 0:
-                one |= {
-                    "numerator": distances[winner, ray], "denominator": trace.denominators[depth][ray],
-                    "quarters": scene.rectangles.mirrors[winner],
-                    **dict(zip("xyz", trace.points[depth][ray].tolist(), strict=True)),
-                }  # fmt: skip
-            if winner >= 0 and scene.light:
-                shading = trace.shadings[depth]
-                one["shadow"] = int(shading.shades[ray]) if shading.facing[ray] else DARK_SIDE
-            found[ray].append(one)
-    return found
-
-
-@of_each_engine
-def test_explains_a_pixel(golden, options):
-    rng = np.random.default_rng([seed(), 2])
-    config = design(**options)
-    screen = config.screen_geometry
-    lengths, shadows = set(), set()
-    for number in range(WORLDS):
-        words = random_words(rng, config)
-        golden.load(words)
-        golden.draw(config)
-        scene = live(config, words)
-        pixels = rng.integers((screen.rows, screen.columns), size=(20, 2))
-        slopes = primary_slopes(screen)[tuple(pixels.T)]
-        if config.turn:
-            # The basis is a factor even if it is not turned, since t is relative to these slopes.
-            slopes = slopes @ np.array(scene.basis)
-        for (row, column), expected in zip(pixels.tolist(), true_bounces(config, scene, slopes), strict=True):
-            found = zip(bounces(golden, column, row), expected, strict=True)
-            known = [{name: bounce[name] for name in one} for bounce, one in found]
-            assert known == expected, f"world {number}, row {row}, column {column}"
-            hits = [one["shadow"] for one in expected if one["winner"] >= 0]
-            lengths |= {len(hits), len(expected)}
-            shadows |= set(hits)
-    assert lengths == {0, 1, 2, 3}
-    assert not config.light or {LIT, DARK_SIDE} < shadows
+        assert bool(golden.call("golden_ray", 0, 0)) == runs
 
 
 def test_an_error_of_the_compiler_is_one_line(tmp_path, monkeypatch):

@@ -151,13 +151,14 @@ def test_the_tab(page, site, engine, name):
     ask(page, scene=name)
     if engine != "exact":
         ask(page, engine=engine)
-    for column, row in random_pixels(20, 3):
+    for column, row in random_pixels(20, 8):
         ray = ray_of(packaged_scenes()[name], DESIGNS[engine], column, row)
         winners = [ray.winner(bounce) for bounce in range(ray.reflections + 1) if ray.alive(bounce)]
         texts = [text for bounce in range(len(winners)) for text in lighting(ray, Place(bounce)) or ()]
         state, context = ask(page, column=column, row=row), f"column {column}, row {row}"
         assert (state["column"], state["row"], state["wrong"]) == (column, row, False), context
         assert [bounce["winner"] for bounce in state["life"]["bounces"]] == winners, context
+        assert [bounce["winner"] for bounce in state["golden"]["bounces"]] == winners, context
         assert state["golden"]["colour"] == state["monitor"] == ray.pixel, context
         assert page.locator("#pixel-life h3").count() == len(winners) + 1, context
         shadows = page.locator("#pixel-life .scroll", has_text="Shadow ray, from")
