@@ -8,16 +8,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
 from conftest import ROOT
 from systemrdl.node import RegNode
 from tcl import compare_calls, tcl_calls
 
 from raycaster.configuration import MOST_RECTANGLES, Configuration, configure
-from raycaster.convert.platform_designer import COMPONENT, INTERFACES, NIOS_SYSTEM, component
-from raycaster.convert.take_home import TOP
+from raycaster.convert.platform_designer import COMPONENT, INTERFACES, NIOS_SYSTEM
 from raycaster.convert.write import write_verilog
-from raycaster.hdl.hierarchy import Port
 from raycaster.register_views import HEADER, SOFTWARE, write_header
 from raycaster.registers import address_bits, compile_registers
 
@@ -31,14 +28,6 @@ def test_the_component_of_platform_designer(tmp_path):
     write_verilog(small(), tmp_path / "verilog")
     calls = tcl_calls(tmp_path / "verilog", Path(COMPONENT))
     compare_calls("platform_designer", [call for call in calls if call[0] != "add_fileset_file"])
-
-
-@pytest.mark.parametrize(
-    ("options", "hz"), [({}, 50_000_000), ({"engine": "beam", "rows": 180}, 74_250_000)], ids=["640x480", "1280x720"]
-)
-def test_the_clock_of_the_component(options, hz):
-    text = component(configure(**options), [Port("clk", 1, False, True)], [f"{TOP}.v"])
-    assert f"set_interface_property clock clockRate {hz}\n" in text
 
 
 def test_the_nios_system(tmp_path):
