@@ -221,8 +221,9 @@ def test_the_start_is_random(noticed: Noticed):
 
 
 def test_an_unknown_start_is_noticed(noticed: Noticed):
-    """Without their reset, registers in Icarus start unknown and stay so."""
-    said = noticed(("video_generator", "if (reset == 1)", "if (1'b0)"), "sim.frame_bench")
+    """Without its reset, the pixel's position in Icarus starts unknown and stays so."""
+    fault = "video_generator", "if (reset == 1) begin\n        x <=", "if (1'b0) begin\n        x <="
+    said = noticed(fault, "sim.frame_bench")
     assert "no leading edge of HS" in said or "neither 0 nor 1" in said
 
 
