@@ -97,6 +97,8 @@ class Expressions:
     def assigned(self, target: ast.expr, value: ast.expr) -> tuple[str, str]:
         """Return the two sides of an assignment."""
         outer = target.value if isinstance(target, ast.Attribute) else target
+        if isinstance(target, ast.Name) and isinstance(value, ast.Name) and isinstance(self._object(value), intbv):
+            self.refuse(value, f"{target.id} would be {value.id} itself in Python; write {target.id}[:] = {value.id}")
         bits, _ = self._type(outer)
         inner: Any = target
         while isinstance(inner, (ast.Subscript, ast.Attribute)):
@@ -252,6 +254,9 @@ class Expressions:
         loops: list[Any] = [node for node in ast.walk(self._tree) if isinstance(node, ast.For)]
         for loop in loops:
             self._ranges[loop.target.id] = Range(0, 0)
+            inner = [node for node in ast.walk(loop) if isinstance(node, ast.For) and node is not loop]
+            if same := [node for node in inner if ast.unparse(node.target) == loop.target.id]:
+                self.refuse(same[0], f"{loop.target.id} is the variable of the loop around it; take another name")
         assigned: dict[str, list[ast.expr]] = {}
         for node in ast.walk(self._tree):
             if isinstance(node, (ast.Assign, ast.AugAssign)):
@@ -504,6 +509,8 @@ class Expressions:
 
     def _operand(self, node: ast.expr) -> str:
         """Return an operand: a name, bits, a comparison, a call."""
+        if any(isinstance(part, ast.Attribute) and part.attr == "next" for part in _chain(node)):
+            self.refuse(node, "a signal's next value cannot be read in Verilog; keep it in a variable")
         match node:
             case ast.Name() | ast.Attribute(attr="val" | "next") | ast.Subscript():
                 return self._place(node)
@@ -541,6 +548,9 @@ class Expressions:
             context = self._context([node.args[0]], None)
             return f"({self._emit(node.args[0], context, None)} != 0)"
         if tree := _tree(node):
+            if lists := [one for one in node.args if isinstance(self._object(one), (list, tuple))]:
+                self.refuse(node, f"{ast.unparse(lists[0])} is a list, which no function of Verilog takes; write its "
+                            "words as arguments")  # fmt: skip
             name = self._function_name(tree, self.arguments(node))
             texts = []
             for argument, formal in zip(node.args, tree.argnames, strict=True):
@@ -593,6 +603,8 @@ class Expressions:
                 if is_memory(known) or type(known).__name__ == "_Ram":
                     return f"{self._place(value)}[{self.text(index)}]"
                 bits, _ = self._type(value)
+                if isinstance(getattr(known, "val", known), bool):
+                    self.refuse(node, f"{ast.unparse(value)} is a bit; write it without an index")
                 constant = self.constant(index)
                 text = self._bit(value, index)
                 # Beyond the highest bit MyHDL reads zeros, or the sign, and refuses to write.
@@ -616,9 +628,10 @@ class Expressions:
 
     def _bits(self, node: ast.Subscript, lower: ast.expr | None, upper: ast.expr | None) -> str:
         if isinstance(node.value, ast.Call) and (_called(node.value) is intbv or _is_modbv(_called(node.value))):
-            value = self.constant(node.value.args[0])
-            if value is not None and (bits := self._width(node, 0)):
-                return f"{bits}'h{value % (1 << bits):x}"
+            value, low = self.constant(node.value.args[0]), self.constant(upper) if upper else 0
+            if value is not None and lower is not None and low is not None:
+                bits = self._width(node, 0)
+                return f"{bits}'h{(value >> low) % (1 << bits):x}"
         bits, signed = self._type(node.value)
         if lower is None and signed:
             assert upper is not None
@@ -681,6 +694,14 @@ class Expressions:
 
 def _known(node: Any) -> Any:
     return getattr(node, "obj", None)
+
+
+def _chain(node: Any) -> Iterator[ast.expr]:
+    """Yield an expression, what it is an attribute or a part of, and so on."""
+    yield node
+    while isinstance(node, (ast.Attribute, ast.Subscript)):
+        node = node.value
+        yield node
 
 
 def _called(node: ast.expr) -> Any:

@@ -543,6 +543,8 @@ def _quoted(text: str) -> str:
 
 def _branches(node: Any, complete: bool = True) -> list[Any]:
     """Return the bodies of an `if`; if they must be complete, none if there is a case without a body."""
+    if node.ignore:  # if __debug__
+        return []
     branches = [branch for _, branch in node.tests]
     if not complete or node.else_:
         return [*branches, node.else_]

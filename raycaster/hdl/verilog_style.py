@@ -130,7 +130,7 @@ def _initial_values(contents: Contents) -> Iterator[str]:
         elif id(memory) in contents.starting and len({int(one.val) for one in memory}) > 1:
             values += words
         elif id(memory) in contents.starting:
-            index = " : initial_values\n    integer i;"
+            index = index or f" : {contents.free('initial_values')}\n    integer i;"
             lines.append(f"for (i = 0; i < {len(memory)}; i = i + 1) {name}[i] = {_value(memory[0])};")
     if values or lines:
         kept = textwrap.wrap(" ".join(value.replace(" ", "\0") for value in values), LINE_LENGTH - 4)

@@ -373,6 +373,26 @@ def loops_end_early(a, first, third, pairs, ones, exact, narrow, both, rest):
     return instances()
 
 
+@program(clk=1, i=2, a=4, y=4, z=4)
+def names_and_constants(clk, i, a, y, z):
+    initial_values = unsigned(4)
+    mem = [Signal(intbv(7)[4:]) for _ in range(4)]
+
+    @always(clk.posedge)
+    def go():
+        mem[i].next = a
+        initial_values.next = mem[i]
+        if __debug__:
+            print("a", a)
+
+    @always_comb
+    def look():
+        y.next = initial_values
+        z.next = a ^ intbv(0xABC)[8:4]
+
+    return instances()
+
+
 @program(clk=1, index=2, y=4, z=4)
 def tables_are_arguments(clk, index, y, z):
     rising, falling = ([Signal(intbv(start + step * n)[4:]) for n in range(4)] for start, step in ((3, 2), (15, -4)))

@@ -63,6 +63,19 @@ def process(statements: str) -> str:
                 ("n: int = 3\nresult.next = a ^ n", "Verilog has no n: int = 3"),
                 ("with a:\n    result.next = b", "Verilog has no with a:"),
                 ("result.next = 0\nwhile a > result:\n    result.next = b", "synthesis has no such loop"),
+                (
+                    "n = 0\nfor k in range(2):\n    for k in range(3):\n        n = n + a[k]\nresult.next = n & b",
+                    "k is the variable of the loop around it; take another name",
+                ),
+                (
+                    "f = intbv(0)[4:]\ng = intbv(0)[4:]\nf = g\ng[:] = a\nresult.next = f",
+                    "f would be g itself in Python; write f[:] = g",
+                ),
+                (
+                    "result.next = a\nif result.next == 3:\n    result.next = b",
+                    "a signal's next value cannot be read in Verilog; keep it in a variable",
+                ),
+                ("result.next = clk[0]", "clk is a bit; write it without an index"),
                 ("result.next[3:] = index", "some bits of result are never assigned; assign all 4"),
                 (
                     "if index == 0:\n    result.next = a\nelif index == 1:\n    result.next = b",
@@ -78,6 +91,10 @@ def process(statements: str) -> str:
         (
             "joined = ConcatSignal(a)\n" + process("result.next = joined"),
             "MyHDL expects len(args) >= 2 here",
+        ),
+        (
+            "def read(m, k):\n    return m[k]\n" + process("result.next = read(memory, index)"),
+            "memory is a list, which no function of Verilog takes",
         ),
         ("def double(x):\n    result.next = x\n" + process("double(a)"), "a function cannot drive"),
         (
