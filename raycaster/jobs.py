@@ -148,7 +148,7 @@ def run_jobs(
     Raises:
         UserError: a local worker died.
     """
-    found = [kept.find(job) if kept else (False, None) for job in jobs]
+    found: list[tuple[bool, Any]] = [kept.find(job) if kept else (False, None) for job in jobs]
     results: dict[int, R] = {place: result for place, (there, result) in enumerate(found) if there}
     if results:
         console.print(f"already there: {len(results)} of {len(jobs)} {what}")

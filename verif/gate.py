@@ -19,6 +19,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
+from typing import Any
 
 from raycaster.digests import digest
 from raycaster.errors import UserError
@@ -131,7 +132,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     commit = commit_of(TESTS)
     asked = {test: entry for test, entry in frozen.items() if arguments.only in test}
     jobs = [Planting(test, speed, arguments.build / commit) for test in asked for speed in SPEEDS if test != LEAVES]
-    now = {LEAVES: mutants_of(arguments, console)} if LEAVES in asked else {}
+    now: dict[str, dict[str, Any]] = {LEAVES: dict(mutants_of(arguments, console))} if LEAVES in asked else {}
     kept = Kept(Planting.place, arguments.fresh or "+" in commit)  # files have been edited
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
         found = run_jobs("tests", Planting.run, jobs, make_executor, console, kept=kept)
