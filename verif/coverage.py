@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """`raycaster verify coverage`: find lines and branches of each engine's Verilog that frames and benches never reach.
 
-Verilator counts them while a design draws every packaged scene that it can draw and runs two benches of the whole
-design. The holes are listed, to be read: each is code that cannot be reached, for a reason that is known, or one that
-needs a scene or a test.
+Verilator counts them while a design draws every packaged scene that it can draw, and hard cases with a light, and runs
+two benches of the whole design. The holes are listed, to be read: each is code that cannot be reached, for a reason
+that is known, or one that needs a scene or a test.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from pathlib import Path
 
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.digest import verilog_digest
+from raycaster.golden.catalogue import catalogue
 from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, run_jobs
 from raycaster.options import CommandParser, add_build_option
 from raycaster.outcomes import add_keep_option, keep
@@ -47,13 +48,24 @@ DESIGNS = {
     )
 }
 
+LIT_RECTANGLES = 8
 FLAGS = (*VERILATOR_FLAGS, "--coverage-line")
 
+READ = "the benches of the bus read this register"
 REASONS: Mapping[str, str] = {
+    "avalon_interface: elsif: else if (bus_address == engine_address) begin": READ,
+    "avalon_interface: elsif: else if (bus_address == size_address) begin": READ,
+    "avalon_interface: elsif: else if (bus_address == version_address) begin": READ,
     "avalon_interface: if: if (progress_underrun) begin": "the beam engine never underruns",
     "beam_renderer: else: else if (row != 240) begin": "no row is announced after the last one",
     "camera_mem: if: if (select_light) begin": "this design has no light",
+    "ray_caster_renderer: else: else if (progress_group_cycles != 65535) begin": "a row is abandoned after 3200 cycles",
+    "ray_caster_renderer: else: if (progress_row_cycles != 65535) begin": "a row is abandoned after 3200 cycles",
+    "ray_sequencer: else: else if (state == BLEND) begin": "in DONE the reset comes at once",
     "ray_sequencer: else: if (enable) begin": "the clock is stopped while the ray caster is not enabled",
+    "ray_sequencer: if: if (early_out) begin": "a rectangle takes one cycle and has no early out",
+    "rect_sequencer: else: if (start_ray || early_out || (cycle == 0)) begin": "a rectangle takes one cycle",
+    "rect_sequencer: else: if (take || !fetched) begin": "a rectangle takes one cycle, so one is taken in each",
     "video_generator: else: if (pixel_end) begin": "a pixel takes one clock",
 }
 """Reasons why holes cannot be reached, by hole."""
@@ -63,19 +75,20 @@ RECORD = re.compile(r"C '(?P<fields>.*)' (?P<count>\d+)")
 
 @dataclass(frozen=True)
 class Run:
-    """A bench on a model with counters, with a scene if it needs one, and reflections that override the scene's."""
+    """A bench on a model with counters, with a scene, reflections that override the scene's, or hard cases to draw."""
 
     model: Model
     build: Path
     bench: str
     scene: Path | None = None
     reflections: int | None = None
+    cases: tuple[int, ...] = ()
 
     @property
     def directory(self) -> Path:
         """Directory of the output, whose name depends on everything that decides the counts."""
         scene = self.scene.read_text() if self.scene else ""
-        key = bench_digest(f"raycaster.{self.bench}", self.model, scene, self.reflections)
+        key = bench_digest(f"raycaster.{self.bench}", self.model, scene, self.reflections, self.cases)
         return (self.build / "coverage" / f"{self.bench}-{self.scene.stem if self.scene else ''}-{key}").resolve()
 
     def place(self) -> Path:
@@ -86,7 +99,10 @@ class Run:
         """Return the counts, and a message if the bench failed."""
         emptied(self.directory)
         scene, counts = str(self.scene.resolve()) if self.scene else "", self.directory / "coverage.dat"
-        job = Job(self.model.configuration, scene=scene, output=str(self.directory), reflections=self.reflections)
+        job = Job(
+            self.model.configuration, scene=scene, output=str(self.directory), reflections=self.reflections,
+            seeds=self.cases, stiff=True,
+        )  # fmt: skip
         plusargs = [f"+verilator+coverage+file+{counts}"]
         try:
             run_bench(self.model, f"raycaster.{self.bench}", job, self.directory, plusargs=plusargs)
@@ -102,6 +118,10 @@ def runs_of(design: Configuration, model: Model, build: Path) -> list[Run]:
         Run(model, build, "verif.benches.register_bench", find_scene("floor"), 2),
         Run(model, build, "verif.benches.underrun_bench"),
     ]
+    # More rectangles would not meet the row budget.
+    scenes_of_cases = enumerate(case.scene for case in catalogue(design.looks))
+    lit = tuple(number for number, scene in scenes_of_cases if scene.light and len(scene.rect) <= LIT_RECTANGLES)
+    benches += [Run(model, build, "verif.soak.bench", cases=lit)] if lit else []
     scenes = [path for path in packaged_scenes().values() if not load_scene(path).lacks(design.looks)]
     return [*benches, *(Run(model, build, "sim.frame_bench", scene) for scene in scenes)]
 
