@@ -128,8 +128,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = command_parser().parse_args(argv)
     if not TESTS.is_dir():
         raise UserError("verify gate: the tests come with a clone, not with the installed program")
-    console, frozen = Console(), json.loads(FROZEN.read_text())
-    commit = commit_of(TESTS)
+    console, frozen, commit = Console(), json.loads(FROZEN.read_text()), commit_of(TESTS)
     asked = {test: entry for test, entry in frozen.items() if arguments.only in test}
     jobs = [Planting(test, speed, arguments.build / commit) for test in asked for speed in SPEEDS if test != LEAVES]
     now: dict[str, dict[str, Any]] = {LEAVES: dict(mutants_of(arguments, console))} if LEAVES in asked else {}
@@ -147,6 +146,5 @@ def main(argv: Sequence[str] | None = None) -> int:
         FROZEN.write_text(json.dumps(frozen, indent=1) + "\n")
         return 0
     worse = [line for test, entry in asked.items() for line in differences(test, entry, now[test])]
-    for line in worse:
-        console.print(line, style="red", soft_wrap=True)
+    console.print(*worse, sep="\n", style="red", soft_wrap=True)
     return 1 if worse else 0
