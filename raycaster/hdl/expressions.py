@@ -14,7 +14,8 @@ import ast
 import functools
 import operator
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any, NamedTuple, NoReturn
 
 from myhdl import concat, intbv
@@ -27,7 +28,10 @@ INTEGER_BITS = 32
 """Bits of a number, or of an integer variable, in Verilog."""
 
 LARGEST_VARIABLE = 1 << 20
-"""Assumed end of the range of an integer variable that counts without a known end."""
+"""Assumed most runs of a process with an integer variable that it keeps and that grows in each run."""
+
+MOST_SWEEPS, MOST_BITS = 100, 64
+"""Sweeps over the assignments to integer variables, and bits of such a variable, after which more is assumed."""
 
 SYMBOLS = {
     ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Mod: "%", ast.FloorDiv: "/", ast.LShift: "<<", ast.RShift: ">>>",
@@ -117,6 +121,16 @@ class Expressions:
         if modulo == bits and not folded and isinstance(value, ast.BinOp) and isinstance(value.right, ast.BinOp):
             value = value.left  # an assignment wraps around by itself
         return self._place(target), self.text(value, bits)
+
+    @contextmanager
+    def assuming(self, values: Mapping[str, int]) -> Iterator[None]:
+        """Make a context in which loops' variables are constants."""
+        before = self._assumed
+        self._assumed = {**before, **values}
+        try:
+            yield
+        finally:
+            self._assumed = before
 
     def check_integer(self, value: ast.expr, known: Any, name: str) -> None:
         """Refuse a value that a Verilog integer, or a bit, does not hold, for a variable or result of this type."""
@@ -250,41 +264,62 @@ class Expressions:
         return Range(min(values), max(values))
 
     def _find_ranges(self) -> None:
-        """Find the ranges of loops' variables, and those of integer variables from what is assigned to them."""
-        loops: list[Any] = [node for node in ast.walk(self._tree) if isinstance(node, ast.For)]
-        for loop in loops:
-            self._ranges[loop.target.id] = Range(0, 0)
-            inner = [node for node in ast.walk(loop) if isinstance(node, ast.For) and node is not loop]
-            if same := [node for node in inner if ast.unparse(node.target) == loop.target.id]:
-                self.refuse(same[0], f"{loop.target.id} is the variable of the loop around it; take another name")
-        assigned: dict[str, list[ast.expr]] = {}
-        for node in ast.walk(self._tree):
-            if isinstance(node, (ast.Assign, ast.AugAssign)):
-                target = node.targets[0] if isinstance(node, ast.Assign) else node.target
-                value = node.value
-                if isinstance(node, ast.AugAssign):
-                    value = ast.copy_location(ast.BinOp(node.target, node.op, node.value), node)
-                if isinstance(target, ast.Name) and _is_integer(self._tree.vardict.get(target.id)):
-                    assigned.setdefault(target.id, []).append(value)
-                    if target.id in self._ranges:
-                        self.refuse(node, f"{target.id} is the variable of a loop; assign to another one")
-        for name in assigned:
-            self._ranges[name] = Range(0, 0)
-        for attempt in range(4):
-            for loop in loops:
-                start, stop, step = self.loop(loop)
-                last = stop - 1 if step > 0 else stop + 1
-                self._ranges[loop.target.id] = Range(min(start, last), max(start, last))
-            for name, values in assigned.items():
-                before = self._ranges[name]
-                around = before
-                for value in values:
-                    around = _either(around, self.range(value))
-                if attempt == 3 and around.low < before.low:
-                    around = around._replace(low=-LARGEST_VARIABLE)
-                if attempt == 3 and around.high > before.high:
-                    around = around._replace(high=LARGEST_VARIABLE)
-                self._ranges[name] = around
+        """Find the ranges of loops' variables, and those of integer variables from what is assigned to them.
+
+        A sweep does all assignments, so that ranges grow at least as much in a sweep as in one assignment of a run.
+        """
+        values: dict[str, list[ast.expr]] = {}
+        runs = self._find_assignments(self._tree, 1, (), values)
+        state = values.keys() & internals.state_of(self._tree).keys()
+        for name in values:
+            self._ranges.setdefault(name, Range(0, 0))
+        growth: dict[str, Range] = {}
+        for sweep in range(1, MOST_SWEEPS):
+            before, grew = {name: self._ranges[name] for name in values}, growth
+            for name, known in values.items():
+                self._ranges[name] = functools.reduce(_either, map(self.range, known), before[name])
+            now = {name: self._ranges[name] for name in values}
+            if (
+                now == before
+                or (sweep == runs and not state)
+                or any(one.bits(True) > MOST_BITS for one in now.values())
+            ):
+                return
+            growth = {name: Range(now[name].low - before[name].low, now[name].high - before[name].high) for name in now}
+        for name, (low, high) in growth.items():
+            times = (LARGEST_VARIABLE if state else runs) if growth == grew else 1 << MOST_BITS
+            before = self._ranges[name]
+            self._ranges[name] = Range(before.low + low * times, before.high + high * times)
+
+    def _find_assignments(self, node: Any, times: int, loops: Sequence[str], values: dict[str, list[ast.expr]]) -> int:
+        """Collect the values of integer variables in a statement; return how many assignments a run does.
+
+        Args:
+            node: the statement.
+            times: how often a run gets to it.
+            loops: variables of the loops around it.
+            values: values by variable, to add to.
+        """
+        runs = 0
+        if isinstance(node, ast.For):
+            numbers, name = range(*self.loop(node)), node.target.id
+            if name in loops:
+                self.refuse(node, f"{name} is the variable of the loop around it; take another name")
+            found = Range(min(numbers, default=0), max(numbers, default=0))
+            self._ranges[name] = _either(found, self._ranges.get(name, found))
+            times, loops = times * len(numbers), (*loops, name)
+        elif isinstance(node, (ast.Assign, ast.AugAssign)):
+            target = node.targets[0] if isinstance(node, ast.Assign) else node.target
+            value = node.value
+            if isinstance(node, ast.AugAssign):
+                value = ast.copy_location(ast.BinOp(node.target, node.op, node.value), node)
+            if isinstance(target, ast.Name) and _is_integer(self._tree.vardict.get(target.id)):
+                if target.id in loops:
+                    self.refuse(node, f"{target.id} is the variable of a loop; assign to another one")
+                values.setdefault(target.id, []).append(value)
+                runs = times
+        parts = ast.iter_child_nodes(node)
+        return runs + sum(self._find_assignments(part, times, loops, values) for part in parts)
 
     def loop(self, node: ast.For) -> tuple[int, int, int]:
         """Return the bounds of a loop: the first value, the end and the step."""
@@ -571,10 +606,9 @@ class Expressions:
         lower, upper = node.slice.lower, node.slice.upper
         found = set()
         for start in (101, 211, 997):
-            self._assumed = {name: start + 37 * place for place, name in enumerate(self._ranges)}
-            high, low = self.constant(lower) if lower else whole, self.constant(upper) if upper else 0
+            with self.assuming({name: start + 37 * place for place, name in enumerate(self._ranges)}):
+                high, low = self.constant(lower) if lower else whole, self.constant(upper) if upper else 0
             found.add(None if None in (high, low) else high - low)
-        self._assumed = {}
         if len(found) != 1 or None in found:
             self.refuse(node, "the number of these bits must be constant; shift the signal, and take its lowest bits")
         return found.pop()

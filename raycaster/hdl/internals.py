@@ -5,7 +5,9 @@ No other file of the package touches them. They may change with any version of M
 """
 
 import ast
+import functools
 import importlib
+import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from io import StringIO
@@ -313,18 +315,52 @@ class Statements(_ConvertVisitor):
 
     def _refuse_latches(self, process: Any) -> None:
         """Refuse a signal that keeps its value in some cases, or in some bits."""
-        always = always_assigned(process.body)
-        places: dict[str, list[Any]] = {}
+        always, _ = self._always(process.body)
         for node in (node for node in ast.walk(process) if isinstance(node, ast.Assign) and _is_next(node.targets[0])):
-            places.setdefault(_root(node.targets[0]), []).append(node)
-        for name, nodes in places.items():
-            if name not in always:
-                self._expressions.refuse(nodes[0], f"{name} keeps its value in other cases, which makes a latch; "
-                                         "assign it in all cases, or write @always to mean a latch")  # fmt: skip
-            parts = [self._expressions.part(node.targets[0]) for node in nodes]
-            width = len(self.tree.symdict[name]) if isinstance(self.tree.symdict[name], SignalType) else 0
-            if None not in parts and width > len({bit for part in parts for bit in range(*part)}):
-                self._expressions.refuse(nodes[0], f"some bits of {name} are never assigned; assign all {width}")
+            name = _root(node.targets[0])
+            width = len(self.tree.symdict[name])
+            missing = (1 << width) - 1 & ~always.get(name, 0)
+            if missing:
+                part = "bit" if isinstance(self.tree.symdict[name], SignalType) else "word"
+                which = f"{part} {missing.bit_length() - 1} of {name}" if missing + 1 < 1 << width else name
+                self._expressions.refuse(node, f"{which} keeps its value in some cases, which makes a latch; assign "
+                                         "all bits in all cases, or write @always to mean a latch")  # fmt: skip
+
+    def _always(self, body: Sequence[Any]) -> tuple[dict[str, int], bool]:
+        """Return a mask of the bits, or of a list's words, that statements assign in any case, by name.
+
+        Also returns True if a break or a continue may skip what follows.
+        """
+        found: dict[str, int] = {}
+        for node in body:
+            every: list[tuple[dict[str, int], bool]] = []
+            if isinstance(node, ast.Assign) and _is_next(node.targets[0]):
+                target, name = node.targets[0], _root(node.targets[0])
+                in_word = isinstance(target, ast.Subscript) and isinstance(self.tree.symdict[name], list)
+                bits = None if in_word else self._expressions.part(target)
+                every = [({name: 0 if bits is None else (1 << bits[1]) - (1 << bits[0])}, False)]
+            elif isinstance(node, ast.For):
+                every = [({}, False)]
+                for value in range(*self._expressions.loop(node)):
+                    with self._expressions.assuming({node.target.id: value}):
+                        one, skips = self._always(node.body)
+                    every[0][0].update({name: mask | every[0][0].get(name, 0) for name, mask in one.items()})
+                    if skips and any(isinstance(part, ast.Break) for part in ast.walk(node)):
+                        break
+            elif isinstance(node, ast.If) and not node.ignore:
+                every = [self._always(branch) for branch in _branches(node, False)]
+                every += [({}, False)] * (not _branches(node))
+            elif isinstance(node, ast.Match):
+                every = [self._always(case.body) for case in node.cases]
+                every += [({}, False)] * (ast.unparse(node.cases[-1].pattern) != "_")
+            elif isinstance(node, (ast.Break, ast.Continue)):
+                return found, True
+            names = set.intersection(*({*masks} for masks, _ in every)) if every else set()
+            for name in names:
+                found[name] = functools.reduce(operator.and_, (masks[name] for masks, _ in every)) | found.get(name, 0)
+            if any(skips for _, skips in every):
+                return found, True
+        return found, False
 
     def _lines(self, *lines: str) -> None:
         for line in lines:

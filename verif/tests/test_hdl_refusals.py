@@ -75,8 +75,21 @@ def process(statements: str) -> str:
                     "result.next = a\nif result.next == 3:\n    result.next = b",
                     "a signal's next value cannot be read in Verilog; keep it in a variable",
                 ),
+                (
+                    "for k in range(4):\n    if a[k]:\n        continue\n    result.next[k] = b[k]",
+                    "result keeps its value in some cases, which makes a latch",
+                ),
+                (
+                    "if a[0]:\n    result.next[2:] = index\nelse:\n    result.next[4:2] = index",
+                    "result keeps its value in some cases, which makes a latch",
+                ),
+                ("result.next[index] = a[0]", "result keeps its value in some cases, which makes a latch"),
+                (
+                    "n = 0\nfor k in range(40):\n    n = n * 2 + a[0]\nresult.next = n",
+                    "n is an integer of 32 bits in Verilog, and has 43 here",
+                ),
                 ("result.next = clk[0]", "clk is a bit; write it without an index"),
-                ("result.next[3:] = index", "some bits of result are never assigned; assign all 4"),
+                ("result.next[3:] = index", "bit 3 of result keeps its value in some cases"),
                 (
                     "if index == 0:\n    result.next = a\nelif index == 1:\n    result.next = b",
                     "result keeps its value",
