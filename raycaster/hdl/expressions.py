@@ -302,7 +302,7 @@ class Expressions:
         """
         runs = 0
         if isinstance(node, ast.For):
-            numbers, name = range(*self.loop(node)), node.target.id
+            numbers, name = range(*self.loop(node)), ast.unparse(node.target)
             if name in loops:
                 self.refuse(node, f"{name} is the variable of the loop around it; take another name")
             found = Range(min(numbers, default=0), max(numbers, default=0))
@@ -318,10 +318,20 @@ class Expressions:
                     self.refuse(node, f"{target.id} is the variable of a loop; assign to another one")
                 values.setdefault(target.id, []).append(value)
                 runs = times
+        if isinstance(node, (ast.If, ast.IfExp, ast.Assert)):
+            self._check_condition(node.test)
+        elif isinstance(node, ast.BoolOp) or (isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not)):
+            for value in node.values if isinstance(node, ast.BoolOp) else [node.operand]:
+                self._check_condition(value)
         parts = ast.iter_child_nodes(node)
         return runs + sum(self._find_assignments(part, times, loops, values) for part in parts)
 
-    def loop(self, node: ast.For) -> tuple[int, int, int]:
+    def _check_condition(self, node: ast.expr) -> None:
+        known = self._object(node)
+        if isinstance(getattr(known, "val", known), EnumItemType):
+            self.refuse(node, f"{ast.unparse(node)} is a state, which Python always takes as true; compare it with ==")
+
+    def loop(self, node: Any) -> tuple[int, int, int]:
         """Return the bounds of a loop: the first value, the end and the step."""
         assert isinstance(node.iter, ast.Call)
         values = [self.constant(argument) for argument in node.iter.args]

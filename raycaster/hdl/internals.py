@@ -332,6 +332,7 @@ class Statements(_ConvertVisitor):
         Also returns True if a break or a continue may skip what follows.
         """
         found: dict[str, int] = {}
+        node: Any
         for node in body:
             every: list[tuple[dict[str, int], bool]] = []
             if isinstance(node, ast.Assign) and _is_next(node.targets[0]):
@@ -342,12 +343,12 @@ class Statements(_ConvertVisitor):
             elif isinstance(node, ast.For):
                 every = [({}, False)]
                 for value in range(*self._expressions.loop(node)):
-                    with self._expressions.assuming({node.target.id: value}):
+                    with self._expressions.assuming({ast.unparse(node.target): value}):
                         one, skips = self._always(node.body)
                     every[0][0].update({name: mask | every[0][0].get(name, 0) for name, mask in one.items()})
                     if skips and any(isinstance(part, ast.Break) for part in ast.walk(node)):
                         break
-            elif isinstance(node, ast.If) and not node.ignore:
+            elif isinstance(node, ast.If) and not getattr(node, "ignore", False):
                 every = [self._always(branch) for branch in _branches(node, False)]
                 every += [({}, False)] * (not _branches(node))
             elif isinstance(node, ast.Match):
@@ -397,6 +398,8 @@ class Statements(_ConvertVisitor):
         index = value.slice if isinstance(value, ast.Subscript) else None
         table = table_of(getattr(value.value, "obj", None)) if isinstance(index, ast.expr) else None
         if table and self._expressions.constant(value) is None:
+            if self._expressions.range(index).low < 0:
+                self._expressions.refuse(node, "the index may be below 0; give it a range without a sign")
             self.write(f"case ({self._expressions.text(index)})")
             self.indent()
             for place, number in enumerate(table):
@@ -424,16 +427,16 @@ class Statements(_ConvertVisitor):
         name, (start, stop, step) = node.target.id, self._expressions.loop(node)
         going, change = ("<", "+") if step > 0 else (">=", "-")
         end = stop if step > 0 else stop + 1
-        flags = [flag for kind, flag in self._flags(node)]
-        if flags[:1] == [f"{name}_goes_on"]:
-            self.write(f"{flags[0]} = 1;")
+        flags = dict(self._flags(node))
+        if ast.Break in flags:
+            self.write(f"{flags[ast.Break]} = 1;")
             self.writeline()
         self.write(f"for ({name}={start}; {name}{going}{end}; {name}={name}{change}{abs(step)}) begin")
         self.indent()
         self._loops.append(node)
-        if f"{name}_is_on" in flags:
-            self._lines(f"{name}_is_on = 1;")
-        self._guarded(node.body, [flag for flag in flags if flag == f"{name}_goes_on"])
+        if ast.Continue in flags:
+            self._lines(f"{flags[ast.Continue]} = 1;")
+        self._guarded(node.body, [flag for kind, flag in flags.items() if kind is ast.Break])
         self._loops.pop()
         self.dedent()
         self._lines("end")
@@ -461,7 +464,8 @@ class Statements(_ConvertVisitor):
         """Return the flags of a loop's breaks and continues, for those within a statement."""
         kinds = {ast.Break: "goes_on", ast.Continue: "is_on"}
         found = {type(node) for node in _own_nodes(within or loop, within is None)}
-        return [(kind, f"{loop.target.id}_{text}") for kind, text in kinds.items() if kind in found]
+        names = {kind: f"{loop.target.id}_{text}" for kind, text in kinds.items() if kind in found}
+        return [(kind, name + "_" * (name in self.tree.symdict)) for kind, name in names.items()]
 
     def mapToCase(self, node: Any, *_: Any) -> None:
         cases = [(self._expressions.case(node.caseVar, test.case[1]), suite) for test, suite in node.tests]

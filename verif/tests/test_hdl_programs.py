@@ -373,6 +373,19 @@ def loops_end_early(a, first, third, pairs, ones, exact, narrow, both, rest):
     return instances()
 
 
+@program(k_goes_on=1, a=4, y=3)
+def a_flag_has_a_name_of_its_own(k_goes_on, a, y):
+    @always_comb
+    def find():
+        y.next = 4
+        for k in range(4):
+            if a[k] and k_goes_on:
+                y.next = k
+                break
+
+    return instances()
+
+
 @program(clk=1, i=2, a=4, y=4, z=4)
 def names_and_constants(clk, i, a, y, z):
     initial_values = unsigned(4)

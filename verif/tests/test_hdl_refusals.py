@@ -109,6 +109,16 @@ def process(statements: str) -> str:
             "def read(m, k):\n    return m[k]\n" + process("result.next = read(memory, index)"),
             "memory is a list, which no function of Verilog takes",
         ),
+        (
+            "from myhdl import enum\nSTATES = enum('A', 'B')\nstate = Signal(STATES.A)\n"
+            "@always(clk.posedge)\ndef turn():\n    state.next = STATES.B\n"
+            + process("result.next = 1 if not state else 0"),
+            "state is a state, which Python always takes as true; compare it with ==",
+        ),
+        (
+            "table = (3, 1, 2, 0)\n" + process("result.next = table[step]"),
+            "the index may be below 0",
+        ),
         ("def double(x):\n    result.next = x\n" + process("double(a)"), "a function cannot drive"),
         (
             "def flip(x):\n    return ~x\n" + process("result.next = flip(a > b)"),
