@@ -109,8 +109,10 @@ class Expressions:
             at = inner.value
             copy = isinstance(at, ast.Subscript) and (isinstance(at.slice, ast.Slice) or not self.is_word(at))
             if copy and (isinstance(inner, ast.Attribute) or isinstance(inner.slice, ast.Slice)):
-                text = ast.unparse(at)
-                name = text.partition("[")[0].removesuffix(".next")
+                name = ast.unparse(at).partition("[")[0].removesuffix(".next")
+                if isinstance(at, ast.Subscript) and isinstance(self._object(at.value), (list, tuple, dict)):
+                    self.refuse(target, f"{name} is not a list of signals of one width; a process drives signals, and "
+                                "words of such lists")  # fmt: skip
                 self.refuse(target, f"MyHDL assigns to a copy of these bits; write {name}.next[...]")
             inner = at
         target = outer
@@ -331,6 +333,27 @@ class Expressions:
         if isinstance(getattr(known, "val", known), EnumItemType):
             self.refuse(node, f"{ast.unparse(node)} is a state, which Python always takes as true; compare it with ==")
 
+    @contextmanager
+    def within(self, node: Any) -> Iterator[None]:
+        """Make a context in which a loop's variable has its values there; elsewhere, it has those of all loops."""
+        name, numbers = node.target.id, range(*self.loop(node))
+        before = self._ranges[name]
+        if numbers:
+            self._ranges[name] = Range(min(numbers), max(numbers))
+        try:
+            yield
+        finally:
+            self._ranges[name] = before
+
+    def is_full(self, subject: ast.expr, patterns: Sequence[ast.expr]) -> bool:
+        """Return True if these values are all that an expression may have."""
+        known = self._object(subject)
+        known = getattr(known, "val", known)
+        if isinstance(known, EnumItemType):
+            return len({internals.text_of(_known(one)) for one in patterns}) == len(internals.states_of(known))
+        low, high = self.range(subject)
+        return len({self.constant(one) for one in patterns} - {None}) > high - low
+
     def loop(self, node: Any) -> tuple[int, int, int]:
         """Return the bounds of a loop: the first value, the end and the step."""
         assert isinstance(node.iter, ast.Call)
@@ -537,7 +560,9 @@ class Expressions:
             left = self._emit(node.left, context, power)
             return f"({left} & {self._number(node, (1 << power) - 1, context)})"
         if power is None and min(dividend.low, divisor.low) < 0:
-            self.refuse(node, "below 0 Verilog rounds up, and Python down; shift to the right, or take bits")
+            self.refuse(
+                node, "a side may be below 0, where Verilog rounds up and Python down; shift to the right, or take bits"
+            )
         left = self._emit(node.left, context, power)
         right = f"(1 << {power})" if 16 < (power or 0) < 31 else self._emit(node.right, context, None)
         return f"({left} {SYMBOLS[type(node.op)]} {right})"
@@ -566,6 +591,8 @@ class Expressions:
             case ast.Constant(value=None):
                 self.refuse(node, "tristate signals are not supported; use an input, an output and an enable")
             case ast.Compare(left=left, ops=[op], comparators=[right]):
+                if isinstance(op, (ast.Is, ast.IsNot)) or any(ast.unparse(side) == "None" for side in (left, right)):
+                    self.refuse(node, f"Verilog has no {ast.unparse(node)}; decide it outside of the process")
                 if type(op) not in SYMBOLS:
                     self.refuse(node, f"Verilog has no {_words(op)}; write == or != for each value")
                 context = self._context([left, right], None)
@@ -647,7 +674,7 @@ class Expressions:
                 if is_memory(known) or type(known).__name__ == "_Ram":
                     return f"{self._place(value)}[{self.text(index)}]"
                 bits, _ = self._type(value)
-                if isinstance(getattr(known, "val", known), bool):
+                if isinstance(known, SignalType) and isinstance(known.val, bool):
                     self.refuse(node, f"{ast.unparse(value)} is a bit; write it without an index")
                 constant = self.constant(index)
                 text = self._bit(value, index)
@@ -792,7 +819,7 @@ def _primary(text: str) -> str:
 
 
 def _words(op: ast.AST) -> str:
-    return {ast.In: "in", ast.NotIn: "not in", ast.Is: "is", ast.IsNot: "is not"}.get(type(op), "such comparison")
+    return {ast.In: "in", ast.NotIn: "not in"}.get(type(op), "such comparison")
 
 
 def _is_one_group(text: str) -> bool:

@@ -239,6 +239,7 @@ class Statements(_ConvertVisitor):
         super().__init__(tree, StringIO())
         self._expressions = expressions
         self._loops: list[Any] = []
+        self._names = {*tree.symdict, *tree.vardict}
         for loop in (node for node in ast.walk(tree) if isinstance(node, ast.For)):
             tree.vardict |= {flag: False for _, flag in self._flags(loop)}
         if tree.kind == _kind.ALWAYS_COMB:
@@ -353,7 +354,7 @@ class Statements(_ConvertVisitor):
                 every += [({}, False)] * (not _branches(node))
             elif isinstance(node, ast.Match):
                 every = [self._always(case.body) for case in node.cases]
-                every += [({}, False)] * (ast.unparse(node.cases[-1].pattern) != "_")
+                every += [({}, False)] * (not self._is_full(node))
             elif isinstance(node, (ast.Break, ast.Continue)):
                 return found, True
             names = set.intersection(*({*masks} for masks, _ in every)) if every else set()
@@ -436,7 +437,8 @@ class Statements(_ConvertVisitor):
         self._loops.append(node)
         if ast.Continue in flags:
             self._lines(f"{flags[ast.Continue]} = 1;")
-        self._guarded(node.body, [flag for kind, flag in flags.items() if kind is ast.Break])
+        with self._expressions.within(node):
+            self._guarded(node.body, [flag for kind, flag in flags.items() if kind is ast.Break])
         self._loops.pop()
         self.dedent()
         self._lines("end")
@@ -465,7 +467,7 @@ class Statements(_ConvertVisitor):
         kinds = {ast.Break: "goes_on", ast.Continue: "is_on"}
         found = {type(node) for node in _own_nodes(within or loop, within is None)}
         names = {kind: f"{loop.target.id}_{text}" for kind, text in kinds.items() if kind in found}
-        return [(kind, name + "_" * (name in self.tree.symdict)) for kind, name in names.items()]
+        return [(kind, name + "_" * (name in self._names)) for kind, name in names.items()]
 
     def mapToCase(self, node: Any, *_: Any) -> None:
         cases = [(self._expressions.case(node.caseVar, test.case[1]), suite) for test, suite in node.tests]
@@ -476,7 +478,15 @@ class Statements(_ConvertVisitor):
         self._cases(node.caseVar, cases)
 
     def visit_Match(self, node: Any) -> None:
-        self._cases(node.subject, [(self._pattern(node, case), case.body) for case in node.cases])
+        cases = [(self._pattern(node, case), case.body) for case in node.cases]
+        if self._is_full(node):
+            cases[-1] = "default", cases[-1][1]  # a code that no state has would keep values
+        self._cases(node.subject, cases)
+
+    def _is_full(self, node: Any) -> bool:
+        """Return True if a match has a case for each value."""
+        values = [one.value for case in node.cases for one in ast.walk(case.pattern) if isinstance(one, ast.MatchValue)]
+        return ast.unparse(node.cases[-1].pattern) == "_" or self._expressions.is_full(node.subject, values)
 
     def _pattern(self, node: Any, case: Any) -> str:
         patterns: list[Any] = case.pattern.patterns if isinstance(case.pattern, ast.MatchOr) else [case.pattern]

@@ -373,6 +373,27 @@ def loops_end_early(a, first, third, pairs, ones, exact, narrow, both, rest):
     return instances()
 
 
+@program(a=4, mode=2, y=4, z=4, w=2)
+def loops_and_cases_of_one_name(a, mode, y, z, w):
+    @always_comb
+    def go():
+        z.next = 0
+        for k in range(1, 4):
+            z.next[k] = a[k - 1]
+        for k in range(4):
+            y.next[k] = a[3 - k]
+
+    @always_comb
+    def choose():
+        match mode:
+            case 0 | 1:
+                w.next = 1
+            case 2 | 3:
+                w.next = 2
+
+    return instances()
+
+
 @program(k_goes_on=1, a=4, y=3)
 def a_flag_has_a_name_of_its_own(k_goes_on, a, y):
     @always_comb
