@@ -398,7 +398,7 @@ def check_keyword(block: Block, name: str, vhdl: bool = False) -> None:
 
 def _is_keyword(name: str) -> bool:
     kind, _ = next(SystemVerilogLexer().get_tokens(name))
-    return kind in Keyword or kind in Operator
+    return kind in Keyword or kind in Operator or name in ("class", "extends")  # which Pygments takes with a name only
 
 
 def refusal(block: Block, reason: str, name: str = "") -> UserError:

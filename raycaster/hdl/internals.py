@@ -528,6 +528,9 @@ class Statements(_ConvertVisitor):
 
     visit_Continue = visit_Break
 
+    def visit_Raise(self, node: Any) -> None:
+        self._expressions.refuse(node, "synthesis has no raise; write assert, which prints a line")
+
     def visit_While(self, node: Any) -> None:
         self._expressions.refuse(node, "synthesis has no such loop; write for with a range of numbers, or one "
                                  "`while True:` around all of an @instance, with one yield at its head")  # fmt: skip

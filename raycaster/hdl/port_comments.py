@@ -101,6 +101,8 @@ class Comments:
                 return match[1] + match[2]
             return f"{value / 1e6:g} MHz" if match[2] else str(value)
 
+        # Tools would take these words at the beginning of a comment for instructions.
+        text = re.sub(r"^\s*(?:synthesis|synopsys|pragma|verilator)\b", lambda match: match[0].title(), text)
         text = re.sub(r"`([\w.]+)`((?: Hz)?)", number, text)
         text = re.sub(r"\b\w+\.\w+\b", lambda match: str(self._vocabulary.get(match[0], match[0])), text)
         return re.sub(r"\b([a-z]\w*)\.([a-z]\w*)\b", r"\1_\2", text)

@@ -419,6 +419,7 @@ def names_and_constants(clk, i, a, y, z):
         if __debug__:
             print("a", a)
 
+    # synthesis translate_off
     @always_comb
     def look():
         y.next = initial_values
