@@ -529,7 +529,7 @@ class Statements(_ConvertVisitor):
     visit_Continue = visit_Break
 
     def visit_Raise(self, node: Any) -> None:
-        self._expressions.refuse(node, "synthesis has no raise; write assert, which prints a line")
+        self.write(f"$display({_quoted(f'*** {ast.unparse(node)} ***')});")
 
     def visit_While(self, node: Any) -> None:
         self._expressions.refuse(node, "synthesis has no such loop; write for with a range of numbers, or one "

@@ -88,7 +88,6 @@ def process(statements: str) -> str:
                     "n = 0\nfor k in range(40):\n    n = n * 2 + a[0]\nresult.next = n",
                     "n is an integer of 32 bits in Verilog, and has 43 here",
                 ),
-                ("result.next = a\nif a == 9:\n    raise ValueError", "synthesis has no raise"),
                 ("result.next = clk[0]", "clk is a bit; write it without an index"),
                 ("result.next[3:] = index", "bit 3 of result keeps its value in some cases"),
                 (
