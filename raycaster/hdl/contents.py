@@ -72,6 +72,14 @@ class Instance:
 
 
 @dataclass(frozen=True)
+class Usage:
+    """Identities of what something in the whole design drives, or comes from outside; and of what something reads."""
+
+    driven: Collection[int]
+    read: Collection[int]
+
+
+@dataclass(frozen=True)
 class Loading:
     """Initial contents of a memory, a list of signals, from a file of hexadecimal words."""
 
@@ -100,13 +108,13 @@ class Contents:
         read: signals that are read, and what they are cut or joined from.
     """
 
-    def __init__(self, block: Block, parts: list[Any], driven: Collection[int]):
+    def __init__(self, block: Block, parts: list[Any], design: Usage):
         """Analyse a block.
 
         Args:
             block: the block.
             parts: as the attribute, with processes as MyHDL has made them.
-            driven: identities of all signals and lists that something in the design drives, or that come from outside.
+            design: what is driven and read in all of the design.
 
         Raises:
             UserError: a signal has no driver, two drivers or no reader; it has no variable or no width; its name is a
@@ -121,7 +129,7 @@ class Contents:
                 self._refuse(f"two things would be called {name} in Verilog; rename one", name)
         self._port_ids = {id(signal) for signal in self.arriving.values()}
         self._touched: dict[int, SignalType] = {}
-        self._driven_somewhere = driven
+        self._design = design
         self._writers: dict[int, list[tuple[Any, str]]] = {}
         self._places: dict[int, str] = {}
         self._owners: dict[str, int] = {}
@@ -201,21 +209,27 @@ class Contents:
                     self._read(signal)
 
     def _find_lists(self) -> None:
-        """Make ports of lists that come from around the block; refuse a list that has two drivers."""
+        """Make ports of lists among the arguments; refuse a list that has two drivers."""
         for name, memory in self.memories.items():
-            around = self.block.func.__code__.co_freevars + self.block.func.__code__.co_names
             inside = [one for one in memory if id(one) not in self._port_ids]
-            moving = any(id(one) in self._driven_somewhere for one in [memory, *memory])
-            if moving and name in around and len(inside) == len(memory):
-                self._refuse(f"{name} is a list of the code around the block; pass it as an argument", name)
+            moving = any(id(one) in self._design.driven for one in [memory, *memory])
             writers = self._writers.get(id(memory), [])
             words = [word for part, own in writers for word in {*internals.written_words(part, own)}]
-            kinds = {(internals.assigned(part), internals.keeps(part)) for part, _ in writers}
+            alone = {place: self.driven[id(one)] for place, one in enumerate(memory) if id(one) in self.driven}
+            kinds = {(self.driven[id(memory)], internals.keeps(part)) for part, _ in writers}
+            kinds |= {(kind, False if kind == "wire" else None) for kind in alone.values()}
             resets = any(getattr(part, "reset", None) is not None for part, _ in writers)
-            apart = len(kinds) == 1 and None not in words and len({*words}) == len(words) and not resets
-            alone = len(writers) < 2 or apart
-            if not alone or (writers and any(id(one) in self.driven for one in memory)):
-                self._refuse(f"{name} has two drivers; drive all of it in one process, or write signals instead", name)
+            words += alone
+            apart = None not in words and len({*words}) == len(words)
+            if len(writers) + bool(alone) > 1 and (not apart or len(kinds) > 1 or resets):
+                reason = "different kinds of drivers" if apart else "two drivers"
+                self._refuse(f"{name} has {reason}; drive all of it in one process, or write signals instead", name)
+            if len(kinds) > 1:
+                self._refuse(f"{name} has different kinds of drivers; drive its signals alike", name)
+            idle = [place for place in range(len(memory)) if place not in words] if inside and None not in words else []
+            if idle and ("wire", False) in kinds:
+                self._refuse(f"{name}[{idle[0]}]: Signal is not driven; drive it as the others", name)
+            self.starting |= {id(memory[place]) for place in idle if kinds}
             if moving and not inside:
                 self.passed[name] = bool(writers) or any(self.driven.get(id(one)) == "reg" for one in memory)
                 for one in memory:
@@ -358,7 +372,7 @@ class Contents:
                 self._refuse(f"{name} has no width; write intbv(0)[8:] or intbv(0, min=-8, max=8)", name)
             if id(signal) not in self.driven and not isinstance(signal, (Tied, Constant, ConcatSignal)):
                 self._refuse(f"{name}: Signal is not driven; drive it, or use tied()", name)
-            if id(signal) not in self.read:
+            if id(signal) not in self.read and id(signal) not in self._design.read:
                 remedy = "remove it, or use unconnected() for an instance's output"
                 self._refuse(f"{name}: Signal is driven but not read; {remedy}", name)
         for name, memory in self.memories.items():

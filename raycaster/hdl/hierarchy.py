@@ -10,16 +10,18 @@ from __future__ import annotations
 import functools
 import inspect
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from raycaster.hdl.contents import Connection, Contents, Instance, Loading, Module, Port, check_keyword, refusal
+from myhdl import ConcatSignal
+
+from raycaster.hdl.contents import Connection, Contents, Instance, Loading, Module, Port, Usage, check_keyword, refusal
 from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.errors import faults_in_one_line
 from raycaster.hdl.given import GivenVerilog, load_words
-from raycaster.hdl.internals import Block, SignalType, bits_of, drivers_of
+from raycaster.hdl.internals import Block, SignalType, SliceSignal, bits_of, drivers_of, operands_of
 from raycaster.hdl.records import Field, block_arguments, block_ports, is_interface, signals_in
 from raycaster.hdl.signals import Tied, Unconnected
 from raycaster.hdl.verilog_style import module_text, number
@@ -57,7 +59,9 @@ def convert_hierarchy(
     """
     with elaboration(), faults_in_one_line():
         converter = _Converter(directory, header, prefix, vocabulary or {})
-        converter.driven = {*map(id, converter.drivers(top)), *map(id, converter.ports(top).values())}
+        outside = dict.fromkeys(map(id, converter.ports(top).values()), 0)
+        converter.driven = {*map(id, converter.drivers(top)), *outside}
+        converter.check_crossing(top, outside)
         module = converter.module_of(top)
         for name in (top.func.__name__, *(port.name for port in module.ports)) if vhdl else ():
             check_keyword(top, name, vhdl=True)
@@ -72,6 +76,7 @@ class _Converter:
         self._initial: dict[str, list[int]] = {}
         self._texts: dict[tuple[Any, str], Module] = {}
         self.driven: set[int] = set()
+        self.read: set[int] = set()
         self.ports = functools.cache(block_ports)
 
     def drivers(self, block: Block) -> Iterator[Any]:
@@ -82,6 +87,46 @@ class _Converter:
             driven = list(self.drivers(sub) if isinstance(sub, Block) else drivers_of(sub))
             yield from driven
             yield from (one for memory in driven if isinstance(memory, list) for one in memory)
+
+    def check_crossing(self, top: Block, homes: dict[int, int]) -> None:
+        """Refuse a signal, or a list, that two blocks use and to which no argument brings it; find what is read.
+
+        Args:
+            top: the design.
+            homes: the signals from outside.
+        """
+        users = [*self._users(top)]
+        crossing: set[int] = set()
+        for block, _, value in users:
+            ports = {*map(id, self.ports(block).values())}
+            for one in _parts(value, ports):
+                if homes.setdefault(id(one), id(block)) != id(block):
+                    crossing.add(id(one))
+        crossing &= self.driven
+        for block, name, value in users:
+            ports = {*map(id, self.ports(block).values())}
+            if name and any(id(one) in crossing for one in _parts(value, ports)):
+                raise refusal(block, f"{name} is used by another block too; pass it as an argument", name)
+
+    def _users(self, block: Block) -> Iterator[tuple[Block, str, Any]]:
+        """Yield each block, those in it first, with each signal and list that it uses, and a name in its processes."""
+        for sub in block.subs:
+            if isinstance(sub, Block):
+                given = getattr(sub.func, "given_verilog", None)
+                if not given:
+                    yield from self._users(sub)
+                for name, signal in self.ports(sub).items():
+                    yield block, "", signal
+                    if given and name not in given.outputs:
+                        self.read |= {*map(id, _parts(signal, ()))}
+            else:
+                for name, value in (sub.sigdict | sub.losdict).items():
+                    yield block, name, value
+                    if name in sub.inputs:
+                        self.read |= {*map(id, _parts(value, ()))}
+                for edge in getattr(sub, "senslist", ()):
+                    yield block, "", getattr(edge, "sig", edge)
+                yield block, "", getattr(sub, "reset", None)
 
     def module_of(self, block: Block) -> Module:
         """Return the block's module, after writing it unless a block of the same kind has one."""
@@ -100,7 +145,7 @@ class _Converter:
             name = f"{first}_{number}"
         self._kinds[name] = kind  # the name is taken while the block's own parts are converted
         module = self._convert_block(block, name, ports)
-        alike = self._texts.setdefault((block.func, _text(module)), module)
+        alike = self._texts.setdefault((block.func, _text(module, first)), module)
         if alike is not module:
             # What differs between the two blocks is in no line of their Verilog.
             module.path.unlink()
@@ -156,7 +201,7 @@ class _Converter:
             instances[instance] = modules[id(sub)].name
             connections = _connections(self.ports(sub), modules[id(sub)], ports)
             parts.append(Instance(modules[id(sub)], f"{instance}_i", connections))
-        contents = Contents(block, parts, self.driven)
+        contents = Contents(block, parts, Usage(self.driven, self.read))
         path = self._directory / f"{name}.v"
         path.write_text(module_text(contents, name, self._header.format(module=name), self._vocabulary))
         return Module(name, path, contents.ports, instances)
@@ -179,11 +224,17 @@ class _Converter:
 
     def _beginnings(self, block: Block, ports: set[int]) -> Iterator[Any]:
         """Yield what processes in a block read from around them: numbers, and initial values except those of ports."""
-        known: dict[int, int] = {}
+        known = {id(signal): -1 - place for place, signal in enumerate(self.ports(block).values())}
 
         def beginning(value: Any) -> Any:
             if isinstance(value, SignalType):
-                return id(value) in ports or _Constant(value.val)
+                first = id(value) not in known
+                number = known.setdefault(id(value), len(known))
+                if id(value) in ports or not first:
+                    return number, id(value) in ports or _Constant(value.val)
+                cut = bits_of(value) if isinstance(value, SliceSignal) else ()
+                parts = operands_of(value) if isinstance(value, ConcatSignal) else cut
+                return number, type(value), _description(value), _Constant(value.val), [*map(beginning, parts)]
             if isinstance(value, (list, tuple)):
                 return [beginning(element) for element in value]
             parts = []
@@ -199,15 +250,32 @@ class _Converter:
 
         for sub in block.subs:
             if isinstance(sub, Block):
+                values = block_arguments(sub).values()
+                yield sub.func, [_Constant(one) for one in values if isinstance(one, (int, float, str))]
                 yield [beginning(signal) for signal in self.ports(sub).values()]
                 yield from self._beginnings(sub, ports)
             else:
-                yield type(sub), beginning(sub.funcobj)
+                edges = [(type(edge), beginning(getattr(edge, "sig", edge))) for edge in getattr(sub, "senslist", ())]
+                yield type(sub), sub.funcobj.__code__, beginning(sub.funcobj), edges
+                yield [(name, beginning(value)) for name, value in (sub.sigdict | sub.losdict).items()]
 
 
-def _text(module: Module) -> str:
-    """Return a module's text without its own name."""
-    return re.sub(rf"\b{module.name}\b", "", module.path.read_text())
+def _parts(value: Any, ports: Collection[int]) -> Iterator[SignalType]:
+    """Yield a signal or a list's signals, and what they are cut or joined from, except ports."""
+    if isinstance(value, (list, tuple)):
+        for one in value:
+            yield from _parts(one, ports)
+    elif isinstance(value, SignalType) and id(value) not in ports:
+        yield value
+        if isinstance(value, SliceSignal):
+            yield from _parts(bits_of(value)[0], ports)
+        elif isinstance(value, ConcatSignal):
+            yield from _parts(operands_of(value), ports)
+
+
+def _text(module: Module, name: str) -> str:
+    """Return a module's text with another name."""
+    return re.sub(rf"\b{module.name}\b", name, module.path.read_text())
 
 
 def _initial(module: Module, ports: Mapping[str, SignalType]) -> list[int]:

@@ -320,7 +320,9 @@ class Statements(_ConvertVisitor):
         for node in (node for node in ast.walk(process) if isinstance(node, ast.Assign) and _is_next(node.targets[0])):
             name = _root(node.targets[0])
             width = len(self.tree.symdict[name])
-            missing = (1 << width) - 1 & ~always.get(name, 0)
+            words = written_words(self.tree, name)
+            own = (1 << width) - 1 if None in words or not words else sum(1 << (word or 0) for word in {*words})
+            missing = own & ~always.get(name, 0)
             if missing:
                 part = "bit" if isinstance(self.tree.symdict[name], SignalType) else "word"
                 which = f"{part} {missing.bit_length() - 1} of {name}" if missing + 1 < 1 << width else name

@@ -168,12 +168,12 @@ def signals_in(name: str, value: Any) -> Iterator[tuple[str, SignalType]]:
             yield from signals_in(f"{name}_{attribute}", element)
 
 
-def is_interface(value: Any, depth: int = 3) -> bool:
-    """Return True for an `Interface`, and for any other object with signals, as MyHDL does."""
+def is_interface(value: Any, depth: int = 6) -> bool:
+    """Return True for an `Interface`, and for any other object with signals or lists of them, as MyHDL does."""
     if getattr(value, "is_interface", False):
         return True
     if isinstance(value, (type, Block, Process)) or inspect.isroutine(value) or inspect.ismodule(value) or not depth:
         return False
-    return any(
-        isinstance(one, SignalType) or is_interface(one, depth - 1) for one in getattr(value, "__dict__", {}).values()
-    )
+    values = getattr(value, "__dict__", {}).values()
+    parts = [one[0] if isinstance(one, list) and one else one for one in values]
+    return any(isinstance(one, SignalType) or is_interface(one, depth - 1) for one in parts)

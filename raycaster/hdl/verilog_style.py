@@ -19,6 +19,7 @@ from raycaster.hdl.records import Joined
 from raycaster.hdl.signals import Tied
 
 LINE_LENGTH = 120
+WHOLE_WORDS: Any = {"break_long_words": False, "break_on_hyphens": False}
 
 POWER_UP = "// Values at power-up."
 """Comment above the initial values of registers and of memories that are written."""
@@ -118,7 +119,7 @@ def _initial_values(contents: Contents) -> Iterator[str]:
     values = [f"{contents.text(one)} = {_value(one)};" for one in signals if id(one) in contents.starting]
     lines: list[str] = []
     values += [f"{name} = {value};" for name, (_, value) in contents.variables.items()]
-    index = ""
+    i = index = ""
     for name, memory in contents.memories.items():
         if any(memory is one for one in loaded):
             continue
@@ -130,10 +131,13 @@ def _initial_values(contents: Contents) -> Iterator[str]:
         elif id(memory) in contents.starting and len({int(one.val) for one in memory}) > 1:
             values += words
         elif id(memory) in contents.starting:
-            index = index or f" : {contents.free('initial_values')}\n    integer i;"
-            lines.append(f"for (i = 0; i < {len(memory)}; i = i + 1) {name}[i] = {_value(memory[0])};")
+            i = i or contents.free("i")
+            index = index or f" : {contents.free('initial_values')}\n    integer {i};"
+            lines.append(f"for ({i} = 0; {i} < {len(memory)}; {i} = {i} + 1) {name}[{i}] = {_value(memory[0])};")
+        else:
+            values += [word for word, one in zip(words, memory, strict=True) if id(one) in contents.starting]
     if values or lines:
-        kept = textwrap.wrap(" ".join(value.replace(" ", "\0") for value in values), LINE_LENGTH - 4)
+        kept = textwrap.wrap(" ".join(value.replace(" ", "\0") for value in values), LINE_LENGTH - 4, **WHOLE_WORDS)
         lines = [*(line.replace("\0", " ") for line in kept), *lines]
         body = "".join(f"    {line}\n" for line in lines)
         one = len(values) == 1 and not index
@@ -219,9 +223,12 @@ def _sensitivity(names: Sequence[str]) -> str:
 
 
 def _wrap(line: str) -> list[str]:
-    """Break a line that is too long at spaces; a comment stays a comment."""
+    """Break a line that is too long at spaces; a comment stays a comment, and one behind a statement goes above it."""
     if len(line) <= LINE_LENGTH or '"' in line:
         return [line]
     indent = line[: len(line) - len(line.lstrip())]
+    statement, mark, comment = line.partition("  // ")
+    if mark and statement.strip():
+        return [*_wrap(f"{indent}// {comment}"), *_wrap(statement.rstrip())]
     further = f"{indent}// " if line.lstrip().startswith("//") else f"{indent}    "
-    return textwrap.wrap(line, LINE_LENGTH, subsequent_indent=further, break_long_words=False, break_on_hyphens=False)
+    return textwrap.wrap(line, LINE_LENGTH, subsequent_indent=further, **WHOLE_WORDS)

@@ -3,9 +3,23 @@
 
 import pytest
 from hdl_blocks import random_inputs
-from myhdl import Signal, always, always_comb, always_seq, block, concat, downrange, enum, instance, instances, intbv
+from myhdl import (
+    Signal,
+    always,
+    always_comb,
+    always_seq,
+    block,
+    concat,
+    downrange,
+    enum,
+    instance,
+    instances,
+    intbv,
+    modbv,
+)
 
 from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.records import Record
 from raycaster.hdl.signals import bit, reset_signal, signed, unsigned
 from raycaster.sim.simulator import find_tool
 from raycaster.tools import run_yosys
@@ -435,6 +449,134 @@ def tables_are_arguments(clk, index, y, z):
     rising, falling = ([Signal(intbv(start + step * n)[4:]) for n in range(4)] for start, step in ((3, 2), (15, -4)))
     first = reads_words(clk, rising, index, y)
     second = reads_words(clk, falling, index, z)
+
+    return instances()
+
+
+@block
+def delays(clk, d, q):
+    @always(clk.posedge)
+    def keep():
+        q.next = d
+
+    return keep
+
+
+class Wires:
+    """Only a list of signals, four objects down."""
+
+    def __init__(self, depth=0):
+        if depth:
+            self.more = Wires(depth - 1)
+        else:
+            self.words = [Signal(intbv(3)[4:]) for _ in range(3)]
+
+
+@block
+def shifts(clk, a, row, y):
+    @always(clk.posedge)
+    def go():
+        row[0].next = a
+        for k in range(1, 3):
+            row[k].next = row[k - 1]
+
+    @always_comb
+    def last():
+        y.next = row[2]
+
+    return instances()
+
+
+@program(clk=1, a=4, index=1, y=4, z=4, v=4, w=4)
+def lists_driven_in_parts(clk, a, index, y, z, v, w):
+    chain = [unsigned(4) for _ in range(4)]
+    links = [delays(clk, chain[k], chain[k + 1]) for k in range(3)]
+    low, high = Signal(intbv(3)[4:]), Signal(intbv(5)[4:])
+    both = [low, high]
+    rows = [[unsigned(4) for _ in range(3)] for _ in range(2)]
+    shifting = shifts(clk, a, rows[1], w)
+    wires = Wires(3)
+    passing = shifts(clk, chain[1], wires.more.more.more.words, v)
+
+    @always_comb
+    def begin():
+        chain[0].next = a
+
+    @always(clk.posedge)
+    def keep():
+        low.next = a
+        high.next = low
+
+    @always_comb
+    def end():
+        y.next = chain[3]
+        z.next = both[index]
+
+    return instances()
+
+
+class Totals:
+    width = 4
+
+
+@block
+def totals(clk, a, y):
+    total = Signal(modbv(0)[Totals.width :])
+
+    @always(clk.posedge)
+    def go():
+        total.next = total + a
+
+    @always_comb
+    def out():
+        y.next = total
+
+    return instances()
+
+
+@block
+def either(clk, a, b, y):
+    chosen = delays(clk, a if Totals.width == 4 else b, y)
+    return chosen
+
+
+@program(clk=1, a=4, b=4, y=6, z=6, v=4, w=4)
+def blocks_that_read_a_global_differ(clk, a, b, y, z, v, w):
+    Totals.width = 4
+    small, left = totals(clk, a, y), either(clk, a, b, v)
+    Totals.width = 6
+    large, right = totals(clk, a, z), either(clk, a, b, w)
+    return instances()
+
+
+@program(clk=1, k=2, a=4, y=4)
+def a_memory_is_called_i(clk, k, a, y):
+    i = [Signal(intbv(3)[4:]) for _ in range(4)]
+
+    @always(clk.posedge)
+    def go():
+        i[k].next = a
+        y.next = i[k]
+
+    return instances()
+
+
+LONG = "a_name_as_generated_code_has_it_for_the_sake_of_uniqueness_which_no_line_can_hold_with_another_" + "x" * 20
+
+
+@program(clk=1, a=4, b=4, y=4)
+def a_record_with_a_long_name(clk, a, b, y):
+    item = Record({LONG: 4, "short": 4})
+    word = item.joined(**{LONG: a, "short": b})
+    long = getattr(item, LONG)
+
+    @always(clk.posedge)
+    def put():
+        item.word.next = word
+
+    @always_comb
+    def get():
+        y.next = item.short ^ long
 
     return instances()
 

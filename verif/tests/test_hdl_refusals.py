@@ -137,13 +137,27 @@ def process(statements: str) -> str:
         (
             "words = [unsigned(4) for _ in range(2)]\n@always_comb\ndef first():\n    words[0].next = a\n"
             "@always(clk.posedge)\ndef second():\n    words[1].next = b\n" + process("result.next = words[1]"),
-            "words has two drivers",
+            "words has different kinds of drivers; drive all of it",
         ),
         (
             "words = [unsigned(4) for _ in range(4)]\n@block\ndef inner(clk, index, a):\n    @always(clk.posedge)\n"
             "    def go():\n        words[index].next = a\n    return go\none = inner(clk, index, a)\n"
             + process("result.next = words[index]"),
-            "inner: words is a list of the code around the block",
+            "inner: words is used by another block too; pass it as an argument",
+        ),
+        (
+            "words = [unsigned(4) for _ in range(4)]\n@block\ndef inner(clk, index, get, result):\n    mine = get()\n"
+            "    @always(clk.posedge)\n    def go():\n        result.next = mine[index]\n    return go\n"
+            "one = inner(clk, index, lambda: words[::-1], result)\n"
+            "@always(clk.posedge)\ndef put():\n    words[index].next = a\n",
+            "inner: mine is used by another block too; pass it as an argument",
+        ),
+        (
+            "class Counter:\n    def __init__(self):\n        self.count = unsigned(4)\n"
+            "    @block\n    def turn(self, clk):\n        @always(clk.posedge)\n        def go():\n"
+            "            self.count.next = (self.count + 1) % 16\n        return go\n"
+            "it = Counter()\none = it.turn(clk)\n" + process("result.next = it.count"),
+            "turn: self_count is used by another block too; pass it as an argument",
         ),
         ("lost = bit()\n" + process("lost.next = a[0]\nresult.next = b"), "lost: Signal is driven but not read"),
         (
