@@ -371,6 +371,8 @@ class Contents:
             if not len(signal):
                 self._refuse(f"{name} has no width; write intbv(0)[8:] or intbv(0, min=-8, max=8)", name)
             if id(signal) not in self.driven and not isinstance(signal, (Tied, Constant, ConcatSignal)):
+                if id(signal) in self._design.driven:
+                    self._refuse(f"{name} is driven by another block; pass it as an argument", name)
                 self._refuse(f"{name}: Signal is not driven; drive it, or use tied()", name)
             if id(signal) not in self.read and id(signal) not in self._design.read:
                 remedy = "remove it, or use unconnected() for an instance's output"

@@ -78,6 +78,7 @@ class _Converter:
         self.driven: set[int] = set()
         self.read: set[int] = set()
         self.ports = functools.cache(block_ports)
+        self.port_ids = functools.cache(lambda block: {*map(id, self.ports(block).values())})
 
     def drivers(self, block: Block) -> Iterator[Any]:
         """Yield the signals, and the lists of signals, that something in a block drives."""
@@ -98,14 +99,12 @@ class _Converter:
         users = [*self._users(top)]
         crossing: set[int] = set()
         for block, _, value in users:
-            ports = {*map(id, self.ports(block).values())}
-            for one in _parts(value, ports):
+            for one in _parts(value, self.port_ids(block)):
                 if homes.setdefault(id(one), id(block)) != id(block):
                     crossing.add(id(one))
         crossing &= self.driven
         for block, name, value in users:
-            ports = {*map(id, self.ports(block).values())}
-            if name and any(id(one) in crossing for one in _parts(value, ports)):
+            if name and any(id(one) in crossing for one in _parts(value, self.port_ids(block))):
                 raise refusal(block, f"{name} is used by another block too; pass it as an argument", name)
 
     def _users(self, block: Block) -> Iterator[tuple[Block, str, Any]]:
@@ -318,16 +317,18 @@ class _Constant:
         return mine is its or ((mine == its) is True and repr(mine) == repr(its))
 
 
-def _description(value: Any) -> Any:
-    """Return what `_kind` compares for an argument."""
+def _description(value: Any, above: tuple[Any, ...] = ()) -> Any:
+    """Return what `_kind` compares for an argument; `above` are the objects around it."""
     if isinstance(value, SignalType):
         reset = (getattr(value, "active", None), getattr(value, "isasync", None))
         return type(value.val), len(value), value.min, value.max, reset
     if isinstance(value, (list, tuple)):
-        return tuple(map(_description, value))
+        return tuple(_description(one, above) for one in value)
+    if any(value is one for one in above):
+        return len(above)
     if is_interface(value):
         places = {name: bits_of(field)[1:] for name, field in vars(value).items() if isinstance(field, Field)}
-        return type(value), places, _description(vars(value))
+        return type(value), places, _description(vars(value), (*above, value))
     if isinstance(value, dict):
-        return tuple((name, _description(element)) for name, element in value.items())
+        return tuple((name, _description(element, above)) for name, element in value.items())
     return _Constant(value)

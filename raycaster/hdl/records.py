@@ -154,18 +154,21 @@ def block_ports(block: Block) -> dict[str, SignalType]:
     return port_signals(block_arguments(block))
 
 
-def signals_in(name: str, value: Any) -> Iterator[tuple[str, SignalType]]:
-    """Yield a variable's signals: itself, a record's word, an interface's attributes, or a list's elements."""
+def signals_in(name: str, value: Any, above: tuple[Any, ...] = ()) -> Iterator[tuple[str, SignalType]]:
+    """Yield a variable's signals: itself, a record's word, an interface's attributes, or a list's elements.
+
+    An object that refers to one of those above it, in which it is, is not entered again.
+    """
     if isinstance(value, SignalType):
         yield name, value
     elif isinstance(value, Record):
         yield f"{name}_word", value.word
     elif isinstance(value, (list, tuple)):
         for index, element in enumerate(value):
-            yield from signals_in(f"{name}_{index}", element)
-    elif is_interface(value):
+            yield from signals_in(f"{name}_{index}", element, above)
+    elif all(value is not one for one in above) and is_interface(value):
         for attribute, element in vars(value).items():
-            yield from signals_in(f"{name}_{attribute}", element)
+            yield from signals_in(f"{name}_{attribute}", element, (*above, value))
 
 
 def is_interface(value: Any, depth: int = 6) -> bool:

@@ -463,9 +463,10 @@ def delays(clk, d, q):
 
 
 class Wires:
-    """Only a list of signals, four objects down."""
+    """Only a list of signals, four objects down; each also refers to itself."""
 
     def __init__(self, depth=0):
+        self.itself = self
         if depth:
             self.more = Wires(depth - 1)
         else:

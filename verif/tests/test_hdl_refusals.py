@@ -159,6 +159,12 @@ def process(statements: str) -> str:
             "it = Counter()\none = it.turn(clk)\n" + process("result.next = it.count"),
             "turn: self_count is used by another block too; pass it as an argument",
         ),
+        (
+            "word = unsigned(4)\n@block\ndef inner(clk, index, result):\n    def get(k):\n        return word ^ k\n"
+            "    @always(clk.posedge)\n    def go():\n        result.next = get(index)\n    return go\n"
+            "one = inner(clk, index, result)\n@always(clk.posedge)\ndef put():\n    word.next = a\n",
+            "inner: word is driven by another block; pass it as an argument",
+        ),
         ("lost = bit()\n" + process("lost.next = a[0]\nresult.next = b"), "lost: Signal is driven but not read"),
         (
             "part = b(4, 0)\nadding = add(a, index, part, unconnected(1))\n",
