@@ -158,6 +158,9 @@ class Expressions:
             return internals.text_of(value)
         if not isinstance(value, int):
             self.refuse(subject, "Verilog's case has numbers and states only; write if and elif")
+        low, high = self.range(subject)
+        if not low <= value <= high:
+            self.refuse(subject, f"{ast.unparse(subject)} is never {value}; leave out this case")
         bits, signed = self._type(subject)
         return str(int(value)) if signed or value < 0 else f"{bits if value >= 1 << 30 else ''}'h{value:x}"
 
@@ -593,6 +596,8 @@ class Expressions:
             case ast.Compare(left=left, ops=[op], comparators=[right]):
                 if isinstance(op, (ast.Is, ast.IsNot)) or any(ast.unparse(side) == "None" for side in (left, right)):
                     self.refuse(node, f"Verilog has no {ast.unparse(node)}; decide it outside of the process")
+                if any(isinstance(side, ast.Constant) and isinstance(side.value, str) for side in (left, right)):
+                    self.refuse(node, "a signal never equals a text; write a number, such as 0b0101")
                 if type(op) not in SYMBOLS:
                     self.refuse(node, f"Verilog has no {_words(op)}; write == or != for each value")
                 context = self._context([left, right], None)

@@ -286,6 +286,10 @@ class Statements(_ConvertVisitor):
         for part in ast.walk(node):
             if isinstance(part, ast.Attribute) and part.attr == "next":
                 self._expressions.refuse(part, "a function cannot drive signals in Verilog; let it return a value")
+        if not tree.argnames and tree.kind != _kind.TASK:
+            self._expressions.refuse(node, "a function in Verilog needs an argument; give it one, or write its value")
+        if node.name in (*tree.argnames, *tree.vardict):
+            self._expressions.refuse(node, f"{node.name} is the function and a variable of it; rename one")
         self.returnLabel = name
         _end_in_returns(node.body, self._expressions)
         word = "task" if tree.kind == _kind.TASK else "function"

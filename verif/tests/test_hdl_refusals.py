@@ -88,6 +88,7 @@ def process(statements: str) -> str:
                     "n = 0\nfor k in range(40):\n    n = n * 2 + a[0]\nresult.next = n",
                     "n is an integer of 32 bits in Verilog, and has 43 here",
                 ),
+                ("result.next = 0\nif a == '0101':\n    result.next = 1", "a signal never equals a text"),
                 ("result.next = clk[0]", "clk is a bit; write it without an index"),
                 ("result.next[3:] = index", "bit 3 of result keeps its value in some cases"),
                 (
@@ -118,6 +119,14 @@ def process(statements: str) -> str:
         (
             "table = (3, 1, 2, 0)\n" + process("result.next = table[step]"),
             "the index may be below 0",
+        ),
+        (
+            "def five():\n    return 5\n" + process("result.next = five() + a"),
+            "a function in Verilog needs an argument",
+        ),
+        (
+            "def same(same):\n    return same\n" + process("result.next = same(a)"),
+            "same is the function and a variable of it; rename one",
         ),
         ("def double(x):\n    result.next = x\n" + process("double(a)"), "a function cannot drive"),
         (
