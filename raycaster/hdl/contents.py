@@ -204,6 +204,9 @@ class Contents:
                 reason = "reads constants only, and Verilog would never run it; compute their values outside of it"
                 self._refuse(f"{part.name} {reason}", part.name)
             edges = [getattr(edge, "sig", edge) for edge in getattr(part, "senslist", ())]
+            if len({*map(id, edges)}) < len(edges):
+                reason = "waits for both edges of a signal, and no register does; write a process for each edge"
+                self._refuse(f"{part.name} {reason}", part.name)
             for signal in [*(part.sigdict[name] for name in sorted(part.inputs)), *edges, getattr(part, "reset", None)]:
                 if isinstance(signal, SignalType):
                     self._read(signal)
@@ -366,10 +369,13 @@ class Contents:
 
     def _check(self) -> None:
         """Refuse signals without a driver, reader or width, and lists that have no value in Verilog."""
-        for signal in self.signals:
+        ports = {id(one): one for name, one in self.arriving.items() if any(name == port.name for port in self.ports)}
+        for signal in (*ports.values(), *self.signals):
             name = self.names[id(signal)]
             if not len(signal):
                 self._refuse(f"{name} has no width; write intbv(0)[8:] or intbv(0, min=-8, max=8)", name)
+            if id(signal) in ports:
+                continue
             if id(signal) not in self.driven and not isinstance(signal, (Tied, Constant, ConcatSignal)):
                 if id(signal) in self._design.driven:
                     self._refuse(f"{name} is driven by another block; pass it as an argument", name)

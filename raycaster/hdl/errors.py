@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+import inspect
 import linecache
 import re
 import traceback
@@ -11,7 +12,31 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from raycaster.hdl.internals import SignalType
+from raycaster.hdl.internals import Block, SignalType
+
+REWORDED = {
+    r"Signal has multiple drivers: (\w+)": r"\1 or a signal that it is cut from has two drivers; connect a new signal",
+    r"Free variable should be a Signal or an int: (\w+)": r"\1 is neither a signal nor an int, and Verilog's "
+    r"functions know nothing else around them; write it out in the function",
+    r"Local variable may be referenced before assignment: (\w+)": r"\1 may have no value here; assign to it first",
+    r"Type mismatch with earlier assignment: (\w+)": r"\1 had a value of another type before; take another name",
+    r"Nr of bits mismatch with earlier assignment: (\w+)": r"\1 had another width before; write \1[:] = ...",
+    r"Can't infer variable type: (\w+)": r"\1 has no type that Verilog knows; write intbv(0)[8:], a number or a bool",
+    r"Can't infer return type": r"the result has no type that Verilog knows; return a number or an intbv",
+    r"Return type mismatch": r"the results have different types; return values of one type",
+    r"Returned nr of bits mismatch": r"the results have different widths; return values of one width",
+    r"Unsupported attribute: (\w+)": r"Verilog has no attribute \1; find its value outside of the process",
+    r"Not supported: non-boolean argument in logical operator": r"and, or and not have words here, of which Python "
+    r"returns one; compare each with != 0",
+    r"Not supported: true division.*": r"Verilog has no true division; write //",
+    r"Not supported: (.*)": r"Verilog has no \1; write it otherwise",
+    r"sensitivity list is empty": r"the process reads no signal, so nothing would run it; use tied()",
+    r"\w+: A block should return block or instantiator objects": r"a block returns its processes and instances; end "
+    r"it with return instances()",
+    r"\w+: subblock (\w+) should be encapsulated in a block decorator": r"\1 makes processes or instances; mark it as "
+    r"a @block, and return them",
+}
+"""MyHDL's texts, and what to say instead."""
 
 
 class UserError(Exception):
@@ -26,16 +51,14 @@ def fault_in_block(error: BaseException, converters: tuple[str, ...] = ()) -> st
         converters: beginnings of the names of modules in which no fault can be, as they only call the conversion.
     """
     if found := re.fullmatch(r"in file (.+), line (\d+):\s*(.*)", str(error), re.DOTALL):
-        # A slice has a driver already: the signal that it is cut from.
-        remedy = "; connect a new signal, not a slice" if found[3].startswith("Signal has multiple drivers") else ""
-        return f"{found[1]}:{found[2]}: {found[3]}{remedy}"
+        return f"{found[1]}:{found[2]}: {_reworded(found[3])}"
     if isinstance(error, SyntaxError):
         return f"{error.filename}:{error.lineno}: {error.msg}"
     frames = list(traceback.walk_tb(error.__traceback__))
     modules = [frame.f_globals.get("__name__", "") for frame, _ in frames]
     if not any(module.startswith("myhdl.") for module in modules):
         return None
-    reason = re.sub(r"^\w+Error: ", "", str(error)) or "MyHDL does not support this"
+    reason = _reworded(re.sub(r"^\w+Error: ", "", str(error))) or "MyHDL does not support this"
     if isinstance(error, AssertionError) and not str(error):
         stated = linecache.getline(frames[-1][0].f_code.co_filename, frames[-1][1])
         reason = f"MyHDL expects {stated.strip().removeprefix('assert ')} here"
@@ -50,10 +73,21 @@ def fault_in_block(error: BaseException, converters: tuple[str, ...] = ()) -> st
         if not isinstance(error, AttributeError) or isinstance(error.obj, ast.AST):
             reason = f"MyHDL does not convert {ast.unparse(nodes[-1]).splitlines()[0]}; write it otherwise"
         return f"{processes[-1].sourcefile}:{processes[-1].lineoffset + nodes[-1].lineno}: {reason}"
-    for (frame, line), module in zip(reversed(frames), reversed(modules), strict=True):
-        if not module.startswith(("myhdl.", "raycaster.hdl.", *converters)):
-            return f"{frame.f_code.co_filename}:{line}: {reason}"
-    return None
+    outside = ("myhdl.", "raycaster.hdl.", *converters)
+    places: list[Any] = [(frame.f_code.co_filename, line) for frame, line in reversed(frames)
+                         if not frame.f_globals.get("__name__", "").startswith(outside)]  # fmt: skip
+    functions = [value.func for value in values if isinstance(value, Block)]
+    places += [(inspect.getsourcefile(function), function.__code__.co_firstlineno) for function in functions]
+    return f"{places[0][0]}:{places[0][1]}: {reason}" if places else None
+
+
+def _reworded(reason: str) -> str:
+    """Return MyHDL's reason as one line in our words."""
+    line = " ".join(reason.split())
+    for text, instead in REWORDED.items():
+        if found := re.fullmatch(text, line):
+            return found.expand(instead)
+    return line
 
 
 @contextmanager

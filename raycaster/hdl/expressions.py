@@ -101,8 +101,11 @@ class Expressions:
     def assigned(self, target: ast.expr, value: ast.expr) -> tuple[str, str]:
         """Return the two sides of an assignment."""
         outer = target.value if isinstance(target, ast.Attribute) else target
-        if isinstance(target, ast.Name) and isinstance(value, ast.Name) and isinstance(self._object(value), intbv):
-            self.refuse(value, f"{target.id} would be {value.id} itself in Python; write {target.id}[:] = {value.id}")
+        if isinstance(target, ast.Name) and (same := self._itself(value)):
+            self.refuse(value, f"{target.id} would be {same} itself in Python; write {target.id}[:] = {same}")
+        within = isinstance(outer, ast.Subscript) and isinstance(outer.slice, ast.Slice) and outer.slice.lower
+        if within and self.range(value).low < 0:
+            self.refuse(value, "MyHDL changes higher bits too if the value is below 0; write % and a power of two")
         bits, _ = self._type(outer)
         inner: Any = target
         while isinstance(inner, (ast.Subscript, ast.Attribute)):
@@ -123,6 +126,23 @@ class Expressions:
         if modulo == bits and not folded and isinstance(value, ast.BinOp) and isinstance(value.right, ast.BinOp):
             value = value.left  # an assignment wraps around by itself
         return self._place(target), self.text(value, bits)
+
+    def _itself(self, node: ast.expr) -> str:
+        """Return the text of a variable, or of a signal's value, if an expression may be this object and no copy."""
+        match node:
+            case ast.Name() if isinstance(self._object(node), intbv):
+                return node.id
+            case ast.Attribute(attr="val") if isinstance(self._object(node), intbv):
+                return ast.unparse(node)
+            case ast.IfExp():
+                return self._itself(node.body) or self._itself(node.orelse)
+            case ast.Call() if (tree := _tree(node)) is not None:
+                inner = Expressions(
+                    tree, self._function_name, dict(zip(tree.argnames, self.arguments(node), strict=True))
+                )
+                returns = [one.value for one in ast.walk(tree) if isinstance(one, ast.Return) and one.value is not None]
+                return ast.unparse(node) if any(map(inner._itself, returns)) else ""
+        return ""
 
     @contextmanager
     def assuming(self, values: Mapping[str, int]) -> Iterator[None]:
@@ -178,8 +198,7 @@ class Expressions:
 
     def is_word(self, node: ast.Subscript) -> bool:
         """Return True for a word of a memory."""
-        known = self._object(node.value)
-        return bool(is_memory(known)) or type(known).__name__ == "_Ram"
+        return bool(is_memory(self._object(node.value)))
 
     def constant(self, node: ast.expr | None) -> Any:
         """Return a number, or True or False; None for an expression that is not constant."""
@@ -405,8 +424,6 @@ class Expressions:
             case ast.Subscript() if (table := table_of(self._object(node.value))) is not None:
                 around = Range(min(table), max(table))
                 return around.bits(around.low < 0), around.low < 0
-            case ast.Subscript(value=ast.Name()) if type(self._object(node.value)).__name__ == "_Ram":
-                return _shape(self._object(node.value).elObj)
             case ast.Subscript():
                 return 1, False
             case ast.Call() if _called(node) == intbv.signed and isinstance(node.func, ast.Attribute):
@@ -430,9 +447,29 @@ class Expressions:
         constant = self.constant(node)
         if isinstance(constant, bool):
             return 1, f"1'b{int(constant)}"
-        if constant is not None or isinstance(node, (ast.BinOp, ast.IfExp)):
+        if constant is not None or (isinstance(node, (ast.BinOp, ast.BoolOp, ast.IfExp)) and not self._is_bool(node)):
             self.refuse(node, "concat needs operands of a known width; assign it to a signal")
         return self._type(node)[0], self._root(node, None)
+
+    def _is_bool(self, node: ast.expr) -> bool:
+        """Return True for an expression that is True or False in Python."""
+        match node:
+            case ast.BinOp(op=ast.BitAnd() | ast.BitOr() | ast.BitXor()):
+                return self._is_bool(node.left) and self._is_bool(node.right)
+            case ast.BoolOp():
+                return all(map(self._is_bool, node.values))
+            case ast.IfExp():
+                return self._is_bool(node.body) and self._is_bool(node.orelse)
+            case ast.Compare() | ast.UnaryOp(op=ast.Not()):
+                return True
+            case ast.Subscript():
+                return (
+                    not isinstance(node.slice, ast.Slice) and not self.is_word(node) and self._type(node) == (1, False)
+                )
+            case ast.Call():
+                return _called(node) is bool
+        known = self._object(node)
+        return isinstance(known.val if isinstance(known, SignalType) else known, bool)
 
     def _own_bits(self, node: ast.expr) -> int:
         """Return the bits that MyHDL's ~ inverts, 0 if it makes a negative number."""
@@ -646,14 +683,24 @@ class Expressions:
         """Return the bits of a slice, whose bounds may depend on loops' variables."""
         assert isinstance(node.slice, ast.Slice)
         lower, upper = node.slice.lower, node.slice.upper
+        names = {part.id for bound in (lower, upper) if bound for part in ast.walk(bound) if isinstance(part, ast.Name)}
+        names = {
+            name
+            for name in names
+            if self.constant(ast.Name(name, ast.Load(), obj=self._tree.symdict.get(name))) is None
+        }
         found = set()
         for start in (101, 211, 997):
-            with self.assuming({name: start + 37 * place for place, name in enumerate(self._ranges)}):
+            with self.assuming({name: start + 37 * place for place, name in enumerate(sorted(names))}):
                 high, low = self.constant(lower) if lower else whole, self.constant(upper) if upper else 0
             found.add(None if None in (high, low) else high - low)
         if len(found) != 1 or None in found:
             self.refuse(node, "the number of these bits must be constant; shift the signal, and take its lowest bits")
-        return found.pop()
+        if upper and self.range(upper).low < 0:
+            self.refuse(node, "the lowest bit may be below 0; correct the bounds")
+        if (bits := found.pop()) < 1:
+            self.refuse(node, "these bounds enclose no bits; the first is above the highest bit, the second the lowest")
+        return bits
 
     def _place(self, node: ast.expr) -> str:
         """Return the text of a name, or of bits of a signal or words of a memory."""
@@ -676,7 +723,7 @@ class Expressions:
                 around = self.range(index)
                 if around.low < 0:
                     self.refuse(node, "the index may be below 0; give it a range without a sign")
-                if is_memory(known) or type(known).__name__ == "_Ram":
+                if is_memory(known):
                     return f"{self._place(value)}[{self.text(index)}]"
                 bits, _ = self._type(value)
                 if isinstance(known, SignalType) and isinstance(known.val, bool):
@@ -717,9 +764,12 @@ class Expressions:
         width = self._width(node, bits)
         if low is None:
             assert upper is not None
+            if (last := self.range(upper).high + width - 1) >= bits:
+                self.refuse(node, f"bit {last} may be among these, and the highest bit is {bits - 1}; correct the "
+                            "bounds, or shift the signal and take its lowest bits")  # fmt: skip
             return f"{text}[{self._moved(upper, offset)} +: {width}]"
         high = low + offset + width - 1
-        if width < 1 or low + width > bits:
+        if low + width > bits:
             self.refuse(node, f"bits {low + width - 1} to {low} are not all within 0 to {bits - 1}; correct the bounds")
         return f"{text}[{high}:{low + offset}]"
 
@@ -748,6 +798,8 @@ class Expressions:
                         return found[1], int(found[2])
                 if not isinstance(known, ShadowSignal):
                     return text, 0
+        if any(isinstance(self._object(part), (tuple, list)) for part in _chain(node)):
+            self.refuse(node, f"Verilog has no tables of tables; put the numbers of {ast.unparse(node)} into one tuple")
         self.refuse(node, "Verilog has no bits of an expression; assign it to a signal, and take its bits")
 
     def _name(self, node: ast.expr, name: str) -> str:
@@ -765,7 +817,8 @@ class Expressions:
             return internals.text_of(known)
         if type(known) is intbv:
             self.refuse(node, f"{name} is an intbv of no process, so Verilog has no value for it; use tied()")
-        self.refuse(node, f"{name} has no value in Verilog; use a number, a signal or a list of signals")
+        kind = type(known).__name__
+        self.refuse(node, f"{name}, of type {kind}, has no value in Verilog; use an int, a signal or a list of signals")
 
 
 def _known(node: Any) -> Any:

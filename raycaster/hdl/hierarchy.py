@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import inspect
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ from myhdl import ConcatSignal
 
 from raycaster.hdl.contents import Connection, Contents, Instance, Loading, Module, Port, Usage, check_keyword, refusal
 from raycaster.hdl.elaboration import elaboration
-from raycaster.hdl.errors import faults_in_one_line
+from raycaster.hdl.errors import UserError, faults_in_one_line
 from raycaster.hdl.given import GivenVerilog, load_words
 from raycaster.hdl.internals import Block, SignalType, SliceSignal, bits_of, drivers_of, operands_of
 from raycaster.hdl.records import Field, block_arguments, block_ports, is_interface, signals_in
@@ -44,7 +44,7 @@ def convert_hierarchy(
 
     Args:
         top: an elaborated block; it cannot be simulated afterwards.
-        directory: directory for the files, which exists.
+        directory: directory for the files, made if there is none.
         header: comment lines for the head of each file; `{module}` is replaced by the module's name.
         prefix: prefix of the names of modules and files; instances keep their names.
         vocabulary: meanings of Python names in docstrings and comments; see `raycaster.hdl.port_comments.Comments`.
@@ -57,6 +57,13 @@ def convert_hierarchy(
         UserError: a block cannot be a module: see `raycaster.hdl.contents.Contents`; or given Verilog lists an output
             that is not an argument of its block, lacks its module, or has the name of another block.
     """
+    if not isinstance(top, Block):
+        code = getattr(getattr(top, "funcobj", None), "__code__", None)
+        place = f"{code.co_filename}:{code.co_firstlineno}: " if code else ""
+        raise UserError(
+            f"{place}expected a block, got {type(top).__name__}; write @block above the function that makes it"
+        )
+    directory.mkdir(parents=True, exist_ok=True)
     with elaboration(), faults_in_one_line():
         converter = _Converter(directory, header, prefix, vocabulary or {})
         outside = dict.fromkeys(map(id, converter.ports(top).values()), 0)
@@ -202,7 +209,7 @@ class _Converter:
             parts.append(Instance(modules[id(sub)], f"{instance}_i", connections))
         contents = Contents(block, parts, Usage(self.driven, self.read))
         path = self._directory / f"{name}.v"
-        path.write_text(module_text(contents, name, self._header.format(module=name), self._vocabulary))
+        path.write_text(module_text(contents, name, self._header.replace("{module}", name), self._vocabulary))
         return Module(name, path, contents.ports, instances)
 
     def _kind(self, block: Block) -> tuple[Any, ...]:
@@ -314,7 +321,18 @@ class _Constant:
             return False
         mine, its = self.value, other.value
         # An array's == returns an array, not a bool.
-        return mine is its or ((mine == its) is True and repr(mine) == repr(its))
+        return mine is its or ((mine == its) is True and repr(mine) == repr(its) and _inside(mine) == _inside(its))
+
+
+def _inside(value: Any) -> list[tuple[str, _Constant]]:
+    """Return an object's attributes, as its own == and repr may leave some out."""
+    names = [*getattr(value, "__dict__", ()), *(name for kind in type(value).__mro__ for name in _slots(kind))]
+    return [(name, _Constant(getattr(value, name))) for name in names if hasattr(value, name)]
+
+
+def _slots(kind: type) -> Sequence[str]:
+    slots = vars(kind).get("__slots__", ())
+    return (slots,) if isinstance(slots, str) else tuple(slots)
 
 
 def _description(value: Any, above: tuple[Any, ...] = ()) -> Any:

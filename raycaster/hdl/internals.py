@@ -24,7 +24,7 @@ from myhdl._ShadowSignal import _TristateDriver, _TristateSignal
 from myhdl._Signal import Constant, _PosedgeWaiterList
 from myhdl._Signal import _Signal as SignalType
 from myhdl._simulator import _signals as all_signals
-from myhdl.conversion._analyze import _analyzeGens, _Ram, _Rom
+from myhdl.conversion._analyze import _analyzeGens, _Rom
 from myhdl.conversion._misc import _genUniqueSuffix, _kind
 from myhdl.conversion._toVerilog import _ConvertVisitor
 from myhdl.conversion._VHDLNameValidation import _vhdl_keywords as vhdl_keywords
@@ -143,9 +143,21 @@ def check_statements(process: Process) -> None:
     """
     tree = process.ast
     for node in ast.walk(tree):
-        if isinstance(node, (ast.AnnAssign, ast.NamedExpr, ast.With, ast.Delete)):
-            text = f"Verilog has no {ast.unparse(node).splitlines()[0]}; write it otherwise"
-            raise SyntaxError(text, (tree.sourcefile, tree.lineoffset + node.lineno, 0, ""))
+        text = f"Verilog has no {ast.unparse(node).partition(chr(10))[0]}; write it otherwise"
+        at: Any = node.targets[0] if isinstance(node, ast.Assign) else getattr(node, "target", None)
+        while isinstance(at, (ast.Attribute, ast.Subscript)):
+            at = at.value
+        if isinstance(node, (ast.Assign, ast.AugAssign)) and not isinstance(at, ast.Name):
+            text = f"Verilog has no assignment to {ast.unparse(at)}; assign to one signal or variable at a time"
+        elif isinstance(node, ast.ListComp):
+            text = (
+                f"a process has no list of its own in Verilog; make {ast.unparse(node)} a list of signals outside of it"
+            )
+        elif isinstance(node, ast.MatchSingleton):
+            text = f"a signal never is {node.value}, even if it equals it; write case 1 and case 0"
+        elif not isinstance(node, (ast.AnnAssign, ast.NamedExpr, ast.With, ast.Delete)):
+            continue
+        raise SyntaxError(text, (tree.sourcefile, tree.lineoffset + getattr(node, "lineno", 1), 0, ""))
 
 
 def assigned(tree: Any) -> bool:
@@ -320,6 +332,15 @@ class Statements(_ConvertVisitor):
 
     def _refuse_latches(self, process: Any) -> None:
         """Refuse a signal that keeps its value in some cases, or in some bits."""
+        for name in state_of(self.tree):
+            first = next(node for node in process.body if name in _names(node))
+            if not (
+                isinstance(first, ast.Assign)
+                and ast.unparse(first.targets[0]) == f"{name}[:]"
+                and name not in _names(first.value)
+            ):
+                self._expressions.refuse(first, f"{name} keeps its value from run to run, which makes a latch; assign "
+                                         f"{name}[:] first, or use a signal and a clock")  # fmt: skip
         always, _ = self._always(process.body)
         for node in (node for node in ast.walk(process) if isinstance(node, ast.Assign) and _is_next(node.targets[0])):
             name = _root(node.targets[0])
@@ -377,8 +398,7 @@ class Statements(_ConvertVisitor):
 
     def _declare(self, variables: Mapping[str, Any]) -> None:
         for name, known in variables.items():
-            one, words = (known.elObj, f" [0:{known.depth - 1}]") if isinstance(known, _Ram) else (known, "")
-            self._lines(f"{declaration('reg', one)}{name}{words};")
+            self._lines(f"{declaration('reg', known)}{name};")
 
     def _expression(self, node: Any) -> None:
         self.write(self._expressions.text(node))
@@ -392,14 +412,23 @@ class Statements(_ConvertVisitor):
     def visit_Constant(self, node: Any) -> None:
         self.write(_quoted(node.value) if isinstance(node.value, str) else self._expressions.text(node))
 
+    def visit_Expr(self, node: Any) -> None:
+        value = node.value
+        is_task = hasattr(value, "tree") and not value.tree.hasReturn
+        is_print = isinstance(value, ast.Call) and getattr(value.func, "obj", None) is print
+        if isinstance(value, (ast.Constant, ast.Yield)) or is_task or is_print:
+            super().visit_Expr(node)
+        else:
+            self._expressions.refuse(
+                node, f"{ast.unparse(value)} changes nothing; assign it to something, or remove it"
+            )
+
     def visit_Print(self, node: Any) -> None:
         node.format = [_quoted(part)[1:-1] if isinstance(part, str) else part for part in node.format]
         super().visit_Print(node)
 
     def visit_Assign(self, node: Any) -> None:
         target, value = node.targets[0], node.value
-        if isinstance(value, ast.ListComp):
-            return
         waits = _is_next(target) and self.okSigAss and not assigned(self.tree)
         arrow = "<=" if waits else "="
         index = value.slice if isinstance(value, ast.Subscript) else None
@@ -563,6 +592,11 @@ def _own_nodes(node: Any, inside: bool = False) -> Iterator[ast.AST]:
             yield from _own_nodes(child)
 
 
+def _names(node: ast.AST) -> set[str]:
+    """Return the names in a statement or an expression."""
+    return {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
+
+
 def _root(target: Any) -> str:
     """Return the name of what is assigned."""
     while not isinstance(target, ast.Name):
@@ -595,9 +629,9 @@ def _is_next(target: Any) -> bool:
 
 def _quoted(text: str) -> str:
     """Return a text in Verilog's quotation marks."""
-    for character, instead in (("\\", "\\\\"), ('"', '\\"'), ("%", "%%"), ("\n", "\\n"), ("\t", "\\t")):
-        text = text.replace(character, instead)
-    return f'"{text}"'
+    known = {"\\": "\\\\", '"': '\\"', "%": "%%", "\n": "\\n", "\t": "\\t"}
+    octal = {chr(code): f"\\{code:03o}" for code in (*range(32), 127)}
+    return f'"{"".join((octal | known).get(character, character) for character in text)}"'
 
 
 def _branches(node: Any, complete: bool = True) -> list[Any]:

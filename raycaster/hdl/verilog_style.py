@@ -53,8 +53,9 @@ def module_text(contents: Contents, name: str, header: str, vocabulary: Mapping[
         *parts,
         "endmodule",
     ]
+    sections = [re.sub(r"[\x00-\x09\x0b-\x1f]", " ", section) for section in sections]
     text = "\n\n".join(stripped for section in sections if (stripped := section.strip("\n")))
-    text = "\n".join(wrapped for line in text.splitlines() for wrapped in _wrap(line.rstrip()))
+    text = "\n".join(wrapped for line in text.split("\n") for wrapped in _wrap(line.rstrip()))
     return re.sub(r"\n{3,}", "\n\n", text) + "\n"
 
 

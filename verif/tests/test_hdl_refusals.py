@@ -99,6 +99,21 @@ def process(statements: str) -> str:
                 ("result.next = b[6:2]", "bits 5 to 2 are not all within 0 to 3"),
                 ("result.next = a << (index - a)", "the number of places may be below 0"),
                 ("result.next = None if a else b", "tristate signals are not supported"),
+                ("result.next = 0\nresult.next[2:] = index - 1", "MyHDL changes higher bits too if the value is"),
+                ("m = [intbv(0)[4:] for _ in range(4)]\nresult.next = m[index]", "a process has no list of its own"),
+                ("n = a.val\nresult.next = n", "n would be a.val itself in Python; write n[:] = a.val"),
+                ("len(a)\nresult.next = a", "len(a) changes nothing; assign it to something, or remove it"),
+                ("concat(result, result).next = a", "Verilog has no assignment to concat(result, result)"),
+                ("result.next = a[1:3]", "these bounds enclose no bits"),
+                ("result.next = a[-1:]", "these bounds enclose no bits"),
+                ("result.next = a[4:-1]", "the lowest bit may be below 0"),
+                ("result.next = a[index + 2:index]", "bit 4 may be among these, and the highest bit is 3"),
+                ("for k in range(4):\n    result.next[k] = a[k + 2:k] > 1", "bit 4 may be among these"),
+                (
+                    "match a[0]:\n    case True:\n        result.next = a\n    case _:\n        result.next = b",
+                    "a signal never is True, even if it equals it; write case 1 and case 0",
+                ),
+                ("result.next = a and b", "and, or and not have words here, of which Python returns one"),
                 ("result.next = 2 ** index", "2 ** index: Verilog has no such operator here"),
             )
         ),
@@ -174,10 +189,39 @@ def process(statements: str) -> str:
             "one = inner(clk, index, result)\n@always(clk.posedge)\ndef put():\n    word.next = a\n",
             "inner: word is driven by another block; pass it as an argument",
         ),
+        (
+            "kept = intbv(0)[4:]\n" + process("result.next = kept\nkept[:] = a"),
+            "kept keeps its value from run to run, which makes a latch",
+        ),
+        (
+            "def same(x):\n    return x\n"
+            + process("f = intbv(0)[4:]\nf[:] = a\ng = same(f)\ng[0] = 1\nresult.next = f"),
+            "g would be same(f) itself in Python",
+        ),
+        (
+            "@always(clk.posedge, clk.negedge)\ndef go():\n    result.next = a\n",
+            "go waits for both edges of a signal",
+        ),
+        (
+            "table = ((1, 2), (3, 4))\n" + process("result.next = table[a[0]][b[0]]"),
+            "Verilog has no tables of tables; put the numbers of table[a[0]] into one tuple",
+        ),
+        ("@block\ndef inner(a):\n    return 5\none = inner(a)\n", "a block returns its processes and instances"),
+        (
+            "def make():\n    @always_comb\n    def go():\n        result.next = a\n    return go\n"
+            "@block\ndef inner():\n    one = make()\n    return one\ntwo = inner()\n",
+            "make makes processes or instances; mark it as a @block",
+        ),
+        (
+            "bare = Signal(intbv(0))\n@block\ndef inner(a, bare, result):\n    @always_comb\n    def go():\n"
+            "        result.next = a + bare\n    return go\none = inner(a, bare, result)\n",
+            "inner: bare has no width",
+        ),
+        ("part = a(1, 3)\n" + process("result.next = part"), "intbv[i:j] requires i > j i, j == 1, 3 (ValueError)"),
         ("lost = bit()\n" + process("lost.next = a[0]\nresult.next = b"), "lost: Signal is driven but not read"),
         (
             "part = b(4, 0)\nadding = add(a, index, part, unconnected(1))\n",
-            "Signal has multiple drivers: total; connect",
+            "total or a signal that it is cut from has two drivers",
         ),
         ("adding = add(a, b, result, unconnected(1))\n" + process("result.next = a"), "result has two drivers"),
         (
@@ -222,6 +266,11 @@ def test_other_wrong_forms_are_refused(body, reason, tmp_path):
                 "result.next = ~index",
                 "result.next = (a if index[0] else b) == 3",
                 "'''A text.'''\nresult.next = a",
+                "result.next = concat(a[3:], a[3] ^ a[2])",
+                "result.next = concat(a[0] & b[0], not a[1], a > b or a[2], a[0] if b[1] else b[2])",
+                "result.next = a[index + 1:index]",
+                "if a == 3:\n    print('one\\r\\x0c\\u2028two')\nresult.next = a",
+                "'''A\x0ctext\u2028of\rlines.'''\nresult.next = a",
             )
         ),
     ],

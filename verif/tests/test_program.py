@@ -130,7 +130,7 @@ GOOD = re.findall(r"```python\n(.*?)```", (ROOT / "docs/extend.md").read_text(),
 @pytest.mark.parametrize(
     ("right", "wrong", "fault"),
     [
-        ("if dim:", "if dimm:", "34: Local variable may be referenced before assignment: dimm"),
+        ("if dim:", "if dimm:", "34: dimm may have no value here; assign to it first"),
         (
             "dimmed.word.next = half",
             "dimmed.wrd.next = half",
