@@ -25,6 +25,15 @@ class Mode:
         return "a mode"
 
 
+class Alike(Mode):
+    """Parameter that says that it equals each other one."""
+
+    __hash__ = None
+
+    def __eq__(self, other: object):
+        return True
+
+
 class Late(Interface):
     """A signal and a constant to add to it."""
 
@@ -97,8 +106,8 @@ ALIKE = [
 APART = [
     *(
         partial(offsets, amounts=amounts)
-        for amounts in [(1, 2), (1, True), (0, False), (ONE, Mode(2)), (PEAK, 2 * PEAK), ((0, 0), (0, 0, 0)),
-                        ((1, 0), (True, 0)), (1, Signed(1)), (0.0, -0.0)]
+        for amounts in [(1, 2), (1, True), (0, False), (ONE, Mode(2)), (Alike(1), Alike(2)), (PEAK, 2 * PEAK),
+                        ((0, 0), (0, 0, 0)), ((1, 0), (True, 0)), (1, Signed(1)), (0.0, -0.0)]
     ),
     partial(offsets, resets=("low", "high")),
     partial(offsets, outputs=("first", "third")),
