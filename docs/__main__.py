@@ -11,13 +11,13 @@ from pathlib import Path
 
 from sphinx.cmd.build import build_main
 
-from raycaster.configuration import configure
+from raycaster.convert.register_views import write_page
+from raycaster.design.decide import configure
+from raycaster.design.options import CommandParser
 from raycaster.docs import timing
 from raycaster.docs.drawings import draw_all
 from raycaster.errors import UserError
-from raycaster.options import CommandParser
 from raycaster.output import printable, replaced
-from raycaster.register_views import write_page
 from raycaster.sim import ensure_tools
 from raycaster.sim.simulator import BUILD, SimulationError
 from raycaster.waits import announce
@@ -27,7 +27,8 @@ HERE = Path(__file__).resolve().parent
 REFERENCE = (
     "raycaster.scene",
     "raycaster.configuration",
-    "raycaster.design",
+    "raycaster.design.decide",
+    "raycaster.design.for_scene",
     "raycaster.golden.model",
     "raycaster.program",
     "raycaster.golden.exact",

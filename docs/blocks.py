@@ -13,7 +13,8 @@ from typing import Any
 import pygraphviz
 from myhdl import ConcatSignal
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
+from raycaster.design.decide import configure
 from raycaster.hdl.elaboration import elaborated, elaboration
 from raycaster.hdl.internals import Block, Process, SignalType, SliceSignal, bits_of, operands_of
 from raycaster.hdl.records import block_arguments, block_ports, signals_in

@@ -11,13 +11,19 @@ from pydantic.fields import FieldInfo
 from systemrdl.node import FieldNode, Node, RegNode
 
 from raycaster.buses import BUSES
-from raycaster.configuration import OPTIONS, configure
+from raycaster.configuration import LOOK_NAMES
+from raycaster.design.decide import OPTIONS, configure
 from raycaster.docs.timing import CONFIGURATION
-from raycaster.engines import ENGINES, beam, exact
-from raycaster.engines.engine import LOOK_NAMES, SETUP_LATENCY, Engine
 from raycaster.outcomes import table
 from raycaster.registers import compile_registers
+from raycaster.rtl.beam import latencies as beam
+from raycaster.rtl.buffered.engine import GROUP_OVERHEAD
+from raycaster.rtl.common.interfaces import AIM_CYCLES
 from raycaster.rtl.common.widths import exact_slope_bits
+from raycaster.rtl.engine.engine import Engine
+from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
+from raycaster.rtl.engines import ENGINES, EXACT, SEED
+from raycaster.rtl.exact.exact_control import PATTERN_LATENCY, WRITE_AT
 
 ACCESS = {"r": "read", "rw": "read, write", "woclr": "read, write 1 to clear", "woset": "read, write 1 to set"}
 
@@ -35,17 +41,17 @@ def options() -> str:
 
 def offers() -> str:
     """Table of the features and the screens of each engine, as it states them."""
-    engines = ENGINES.values()
+    engines, facts = ENGINES.values(), [one.facts for one in ENGINES.values()]
 
     def cell(engine: Engine, place: tuple[str, int]) -> str:
-        scales = sorted(engine.scales(engine.screens[place])) if place in engine.screens else []
+        scales = sorted(engine.scales(engine.facts.screens[place])) if place in engine.facts.screens else []
         return f"scales {', '.join(map(str, scales))}" if len(scales) > 1 else "yes" * len(scales)
 
-    rows = [[what, f"`{look.upper()}=1`", *("yes" if look in one.looks else "" for one in engines)]
+    rows = [[what, f"`{look.upper()}=1`", *("yes" if look in one.looks else "" for one in facts)]
             for look, what in LOOK_NAMES.items()]  # fmt: skip
-    rows.append(["2 pixels per clock", "`PIXELS=2`", *("" if one.line_buffered else "yes" for one in engines)])
-    rows.append(["fraction bits, rounding", "`FRACTION_BITS=`", *("yes" if one.divides else "" for one in engines)])
-    screens = {place: screen for one in engines for place, screen in one.screens.items()}
+    rows.append(["2 pixels per clock", "`PIXELS=2`", *("" if one.line_buffered else "yes" for one in facts)])
+    rows.append(["fraction bits, rounding", "`FRACTION_BITS=`", *("yes" if one.divides else "" for one in facts)])
+    screens = {place: screen for one in facts for place, screen in one.screens.items()}
     for (name, count), screen in sorted(screens.items(), key=lambda one: (one[0][0] != "vga", one[0])):
         size = f"{screen.horizontal.visible}x{screen.vertical.visible}"
         chosen = f"`ROWS={count}`" if name == "vga" else f"`SCREEN={name}`"
@@ -68,8 +74,9 @@ def seed_cycles() -> str:
     for reflections in range(3):
         for bits in (1, 2, 3):
             config = configure(reflections=reflections, divider_bits=bits, allow_underrun=True)
-            fits = "yes" if config.group_cycles <= config.group_budget else "no"
-            rows.append([reflections, bits, config.rect_cycles, config.group_cycles, config.group_budget, fits])
+            cycles = SEED.group_cycles(config)
+            fits = "yes" if cycles <= config.group_budget else "no"
+            rows.append([reflections, bits, SEED.rect_cycles(config), cycles, config.group_budget, fits])
     return table([*head, "budget per group", "fits"], rows)
 
 
@@ -79,7 +86,7 @@ def exact_cycles() -> str:
     for reflections in range(3):
         for rectangles in (12, 32):
             config = configure(engine="exact", reflections=reflections, rectangles=rectangles)
-            rows.append([reflections, rectangles, config.units, config.group_cycles, config.group_budget])
+            rows.append([reflections, rectangles, config.units, EXACT.group_cycles(config), config.group_budget])
     return table(
         ["reflections", "rectangles", "fewest units", "cycles per group, worst case", "budget per group"], rows
     )
@@ -172,21 +179,21 @@ def facts() -> dict[str, str]:
         "registers": registers(),
         "units": str(default.units),
         "rectangles": str(default.rectangles),
-        "rect_cycles": str(default.rect_cycles),
-        "seed_latency": str(default.pass_latency),
-        "overhead": str(exact.Exact.GROUP_OVERHEAD),
-        "verdict": str(exact.WRITE_AT + 1),
-        "exact_latency": str(configure(engine="exact").pass_latency),
+        "rect_cycles": str(SEED.rect_cycles(default)),
+        "seed_latency": str(SEED.pass_latency(default)),
+        "overhead": str(GROUP_OVERHEAD),
+        "verdict": str(WRITE_AT + 1),
+        "exact_latency": str(EXACT.pass_latency(configure(engine="exact"))),
         "turned_slope_bits": str(exact_slope_bits(configure(engine="exact", turn=True))),
-        "pattern_latency": str(exact.PATTERN_LATENCY),
-        "aim_cycles": str(exact.AIM_CYCLES),
+        "pattern_latency": str(PATTERN_LATENCY),
+        "aim_cycles": str(AIM_CYCLES),
         "light_units": str(configure(engine="exact", light=True).units),
         "beam_latency": str(beam.beam_latency(configure(engine="beam"))),
         "beam_pass": str(beam.pass_latency(configure(engine="beam"))),
-        "group": str(default.group_cycles),
+        "group": str(SEED.group_cycles(default)),
         "budget": str(default.group_budget),
         "row": f"{default.screen_geometry.row_cycles:,}",
         "setup": str(SETUP_LATENCY),
         "traced_units": str(CONFIGURATION.units),
-        "traced_group": str(CONFIGURATION.group_cycles),
+        "traced_group": str(SEED.group_cycles(CONFIGURATION)),
     }

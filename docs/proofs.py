@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
+from raycaster.design.decide import configure
 from raycaster.outcomes import table
 from raycaster.verif.formal.alone import FIXED_SCENE, TableAlone
 from raycaster.verif.formal.lemmas import LEMMAS

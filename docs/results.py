@@ -11,19 +11,19 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from raycaster.configuration import configure
 from raycaster.convert.digest import verilog_digest
+from raycaster.design.decide import configure
+from raycaster.design.options import CommandParser
 from raycaster.docs.facts import facts
 from raycaster.docs.hdl import parts
 from raycaster.docs.pages import need_clone, render_all
 from raycaster.docs.proofs import proofs
 from raycaster.docs.tables import is_stale, outcomes, tables
-from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.fpga.cells import FAMILIES, measure
-from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, add_keep_option, keep
 from raycaster.output import Console, Table, printable
+from raycaster.rtl.engines import ENGINES
 from raycaster.scene import packaged_scenes
 from raycaster.sim.scenes import RESULT, output_directory
 

@@ -18,11 +18,12 @@ from pathlib import Path
 from string import ascii_uppercase
 from typing import Any
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 from raycaster.debug.probes.engines import description_of
 from raycaster.debug.waves import Waves, signed
+from raycaster.design.decide import configure
+from raycaster.design.options import command_line
 from raycaster.errors import UserError
-from raycaster.options import command_line
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import build_model, run_bench
 

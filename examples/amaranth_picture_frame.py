@@ -20,10 +20,11 @@ from amaranth.lib import wiring
 from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import Component, In, Out
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 from raycaster.convert.take_home import PREFIX, TOP
 from raycaster.convert.write import write_verilog
-from raycaster.options import run_command
+from raycaster.design.decide import configure
+from raycaster.design.options import run_command
 from raycaster.program import scene_words
 from raycaster.registers import address_bits
 from raycaster.scene import Scene, load_scene

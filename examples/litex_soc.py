@@ -13,9 +13,10 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
+from raycaster.design.decide import configure
+from raycaster.design.options import run_command
 from raycaster.memory_map import MEMORY_BYTES
-from raycaster.options import run_command
 from raycaster.rtl.common.interfaces import vga_of
 from raycaster.sw.firmware import DRIVER, START, build_firmware
 

@@ -14,12 +14,13 @@ from typing import Any
 
 from myhdl import Signal, always_comb, always_seq, block, instances, intbv
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 from raycaster.convert.vocabulary import VOCABULARY
+from raycaster.design.decide import configure
+from raycaster.design.options import run_command
 from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.hierarchy import convert_hierarchy
 from raycaster.hdl.signals import tied, unconnected
-from raycaster.options import run_command
 from raycaster.program import scene_words
 from raycaster.registers import address_bits
 from raycaster.rtl.common.interfaces import AvalonPort

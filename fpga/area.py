@@ -13,17 +13,18 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 from raycaster.convert.digest import verilog_digest
 from raycaster.convert.take_home import TOP
-from raycaster.engines import ENGINES
+from raycaster.design.decide import configure
+from raycaster.design.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.fpga.cells import FAMILIES, Area, Family, measure, measure_modules
 from raycaster.jobs import run_jobs, threads
-from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table
+from raycaster.rtl.engines import ENGINES
 from raycaster.waits import announce
 
 JOBS = 2
@@ -62,11 +63,11 @@ def feature_designs() -> list[Counted]:
     """
     designs = []
     for engine in ENGINES.values():
-        top = "ray_unit" if engine.divides else TOP
-        for chosen in ([], *([name] for name in engine.looks), engine.looks):
+        top = "ray_unit" if engine.facts.divides else TOP
+        for chosen in ([], *([name] for name in engine.facts.looks), engine.facts.looks):
             options = dict.fromkeys(chosen, 1)
-            labels = {"engine": engine.name, "module": top, "options": options}
-            designs.append((labels, configure(engine=engine.name, **options), top))
+            labels = {"engine": engine.facts.name, "module": top, "options": options}
+            designs.append((labels, configure(engine=engine.facts.name, **options), top))
     return designs
 
 

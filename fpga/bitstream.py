@@ -24,22 +24,18 @@ from tempfile import TemporaryDirectory
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
 from raycaster.complaints import as_typed
-from raycaster.configuration import CHANNEL_BITS, Configuration, configure
+from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.convert.digest import files_digest
 from raycaster.convert.write import write_dvi_encoder, write_scene_system, write_system
-from raycaster.design import Design, ProcessorDesign
+from raycaster.design.decide import configure
+from raycaster.design.for_scene import Design, ProcessorDesign
+from raycaster.design.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import OpenBoard, board_names, find_board
 from raycaster.fpga.flows import FLOWS, Clocks, Flow, clocks_for, place_and_route
 from raycaster.fpga.netlist import write_netlist
 from raycaster.memory_map import PROGRAM_FILE
-from raycaster.options import (
-    CommandParser,
-    add_configuration_options,
-    add_scene_argument,
-    given_options,
-)
 from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table, replaced
 from raycaster.rtl.system.scene_player import BUTTONS

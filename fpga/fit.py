@@ -12,8 +12,14 @@ from typing import Any
 
 from raycaster.configuration import Configuration
 from raycaster.convert.digest import verilog_digest
-from raycaster.design import Design, packaged_for
-from raycaster.engines import ENGINES
+from raycaster.design.for_scene import Design, packaged_for
+from raycaster.design.options import (
+    CommandParser,
+    add_configuration_options,
+    add_scene_argument,
+    command_line,
+    given_options,
+)
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import SCOPES, Fixing, fix, general_design, show
 from raycaster.fpga.cells import FAMILIES, Area, measure
@@ -21,15 +27,9 @@ from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong
 from raycaster.jobs import processes, run_jobs
-from raycaster.options import (
-    CommandParser,
-    add_configuration_options,
-    add_scene_argument,
-    command_line,
-    given_options,
-)
 from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table
+from raycaster.rtl.engines import ENGINES, engine_of
 from raycaster.scene import load_scene
 from raycaster.tools import find_program
 from raycaster.waits import announce
@@ -80,7 +80,7 @@ def cycles_a_frame(config: Configuration) -> int:
     """Return the most system clocks per frame, with all rectangles; without a line buffer, each shown pixel counts."""
     screen = config.screen_geometry
     times = 1 if config.facts.line_buffered else screen.doubling**2
-    return times * screen.rows * config.groups * config.group_cycles
+    return times * screen.rows * config.groups * engine_of(config).group_cycles(config)
 
 
 def candidates(
@@ -100,7 +100,7 @@ def candidates(
         UserError: the scene or the options are wrong.
     """
     scene = load_scene(path)
-    fitting = [name for name, engine in ENGINES.items() if not scene.lacks(engine.looks)]
+    fitting = [name for name, engine in ENGINES.items() if not scene.lacks(engine.facts.looks)]
     for engine in (options["engine"],) if "engine" in options else fitting:
         for chosen, general, wrong in _arithmetic(engine, path, options, error):
             yield Candidate(general, GENERAL, wrong, chosen)
@@ -114,7 +114,7 @@ def _arithmetic(
 ) -> Iterator[tuple[Mapping[str, Any], Design, float]]:
     """Yield the options of each arithmetic that meets the error, its general design, and its error."""
     chosen = {**options, "engine": engine}
-    if not ENGINES[engine].divides:
+    if not ENGINES[engine].facts.divides:
         yield chosen, general_design(path, chosen), 0.0
         return
     roundings = (options["rounding"],) if "rounding" in options else ROUNDINGS

@@ -14,10 +14,10 @@ from pathlib import Path
 from raycaster.configuration import Configuration
 from raycaster.convert.take_home import clock_period
 from raycaster.convert.write import write_scene_system
+from raycaster.design.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import CHANNELS, TOP, VGA, QuartusBoard, board_names, find_board
-from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.output import Console, replaced
 from raycaster.scene import Scene, find_scene
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from raycaster.convert.take_home import PREFIX
 from raycaster.convert.write import write_verilog
+from raycaster.design.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.fit.fixing import add_fix_option, configuration_of
-from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.output import Console, printable
 
 

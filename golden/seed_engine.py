@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from raycaster.configuration import COORDINATE_BITS, Rounding
-from raycaster.engines import SEED
 from raycaster.golden.model import Bounce, Meeting, Model
 from raycaster.golden.world import OTHER_AXES, Rectangles
 
@@ -33,7 +32,7 @@ class SeedModel(Model):
     rounding: Rounding = "truncate"
     """Rounding of quotients."""
 
-    looks: Collection[str] = field(default=SEED.looks, kw_only=True)
+    looks: Collection[str] = field(default=("materials", "patterns"), kw_only=True)
 
     def bound(self, origin: np.ndarray, slope: np.ndarray, way: np.ndarray) -> np.ndarray:
         """Bound the error of a primary ray's hit point, in world units: one unit in the last place, or half of one."""

@@ -5,6 +5,6 @@
 `raycaster.hdl`, which does so for any MyHDL design.
 `raycaster.golden` has the golden models that the hardware is compared with, and `raycaster.verif` the test benches.
 `raycaster.fpga` builds designs for boards, `raycaster.fit` leaves out hardware that a scene does not need,
-`raycaster.sw` is the software, and `raycaster.cli` the program `raycaster`. Code that all of them share (configuration,
-engines, screens, register map, scene files) is here.
+`raycaster.sw` is the software, and `raycaster.cli` the program `raycaster`. `raycaster.design` decides a design from
+options. Code that all of them share (configuration, screens, register map, scene files) is here.
 """

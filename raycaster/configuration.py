@@ -1,22 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""Configuration of a design: the options that a user chooses, and everything decided from them."""
+"""Configuration of a design as plain data: the options that a user chooses, everything decided from them, and the facts
+about its engine."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
-from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import BeforeValidator, ConfigDict, Field
 from pydantic.dataclasses import dataclass as validated_dataclass
-from pydantic.fields import FieldInfo
 from pydantic_core import PydanticKnownError
 
 from raycaster.buses import BUSES, OWN
-from raycaster.complaints import as_typed, refusal
-from raycaster.engines import ENGINES, SEED, Engine
-from raycaster.engines.engine import LOOK_NAMES, LOOKS
 from raycaster.errors import UserError, listed
 from raycaster.fixed import FixedScene
 from raycaster.screens import COORDINATE_BITS, Screen
@@ -48,10 +45,20 @@ else:
     Whole = Annotated[int, BeforeValidator(_whole)]
 
 if TYPE_CHECKING:
-    EngineName = BusName = str
+    BusName = str
 else:
-    EngineName, BusName = Literal[*ENGINES], Literal[*BUSES]
+    BusName = Literal[*BUSES]
 
+LOOK_NAMES = {
+    "turn": "a camera that turns",
+    "materials": "rectangles that mirror more or less than half",
+    "patterns": "rectangles with patterns",
+    "light": "a light",
+}
+"""Purposes of the options for optional features of scenes."""
+
+LOOKS = tuple(LOOK_NAMES)
+"""Options for optional features of scenes."""
 
 Rounding = Literal["truncate", "nearest"]
 """Rounding of quotients: toward zero, or to nearest."""
@@ -61,6 +68,43 @@ class ConfigurationError(UserError):
     """A configuration that cannot be built; its text is one line that says what is wrong, where, and what to do."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Facts:
+    """Facts about an engine, the hardware that computes the rays.
+
+    Attributes:
+        name: name for users.
+        code: value of the register `engine`.
+        colour: colour of its marks and lines in plots, from the palette of Okabe and Ito.
+        marker: Matplotlib's name for the marker of its points in plots.
+        usual_build: usual time to convert its default design and to build it with Verilator on two cores, estimated
+            from processor time.
+        screens: screens that it can fill, by name and rows.
+        rect_latency: cycles from `fetch` to the rectangle.
+        margin: distance by which a primary ray that hits a rectangle may pass outside its bounds, in world units.
+        lacks: options of `LOOKS` that it refuses, each with the reason.
+        divides: True if it forms quotients, which have fraction bits and are rounded.
+        line_buffered: True if units fill a line buffer ahead of the monitor, group by group.
+    """
+
+    name: str
+    code: int
+    colour: str
+    marker: str
+    usual_build: str
+    screens: Mapping[tuple[str, int], Screen]
+    rect_latency: int = 1
+    margin: int = 0
+    lacks: Mapping[str, str] = field(default_factory=dict)
+    divides: bool = False
+    line_buffered: bool = True
+
+    @property
+    def looks(self) -> tuple[str, ...]:
+        """Options of `LOOKS` that a design can have."""
+        return tuple(look for look in LOOKS if look not in self.lacks)
+
+
 @validated_dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid"))
 class Options:
     """Options that a user chooses for a design. `configure` decides those that are None or "auto".
@@ -68,10 +112,7 @@ class Options:
     Raises pydantic's `ValidationError`.
     """
 
-    engine: EngineName = Field(
-        SEED.name,
-        description=f"engine that computes the rays: {listed(ENGINES)}; by default exact for a scene that needs it",
-    )
+    engine: str = Field(description="engine that computes the rays")
     units: Whole | None = Field(
         None,
         ge=1,
@@ -128,58 +169,29 @@ class Options:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Configuration:
+class Configuration(Options):
     """Everything that distinguishes one generated design from another, with nothing left open; made by `configure`.
 
+    The attributes that `Options` has, too, are described there.
+
     Attributes:
-        engine: name of the engine.
         units: number of parallel ray units; with the beam engine, one per pixel of a clock.
-        rectangles: number of rectangles in the hardware.
-        reflections: most reflections per ray.
-        rows: rows of rays, at scale 1.
-        scale: resolution of the picture in both directions, relative to `rows`.
-        pixels: pixels per clock.
-        fraction_bits: fraction bits of origins, planes and quotients; 0 if the engine does not divide.
-        rounding: rounding of quotients.
-        divider_bits: quotient bits per cycle; 0 if the engine does not divide.
-        colour_bits: bits per colour channel on the VGA output.
-        screen: name of the screen.
-        allow_underrun: True if the design may miss the row budget.
+        divider_bits: quotient bits per cycle; 0 if the engine does not divide, nor are there fraction bits then.
         culling: True if units abandon early the rectangles that no ray of a group can hit. This saves cycles in most
             groups but none in the worst case, so the row budget ignores it.
-        turn: True if the camera can turn.
-        materials: True if rectangles can mirror more or less than half.
-        patterns: True if rectangles can have patterns.
-        light: True if there is a point light that casts shadows.
-        bus: name of the bus.
-        fixed: scene that is built in, or None.
+        facts: facts about the engine.
     """
 
-    engine: str
     units: int
-    rectangles: int
-    reflections: int
     rows: int
     scale: int
-    pixels: int
-    fraction_bits: int
-    rounding: Rounding
     divider_bits: int
-    colour_bits: int
-    screen: str
-    allow_underrun: bool
     culling: bool
     turn: bool
     materials: bool
     patterns: bool
     light: bool
-    bus: str
-    fixed: FixedScene | None = None
-
-    @property
-    def facts(self) -> Engine:
-        """The engine that `engine` names."""
-        return ENGINES[self.engine]
+    facts: Facts = field(compare=False, repr=False)
 
     @property
     def looks(self) -> tuple[str, ...]:
@@ -239,21 +251,6 @@ class Configuration:
         return -(-self.quotient_bits // self.divider_bits)
 
     @property
-    def rect_cycles(self) -> int:
-        """Cycles from one rectangle to the next; 0 for the beam engine, which tests all at once."""
-        return self.facts.rect_cycles(self)
-
-    @property
-    def pass_latency(self) -> int:
-        """Cycles from the end of a pass's last rectangle to the first cycle of the next pass."""
-        return self.facts.pass_latency(self)
-
-    @property
-    def group_cycles(self) -> int:
-        """Cycles per group in the worst case, with all rectangles enabled."""
-        return self.facts.group_cycles(self)
-
-    @property
     def group_budget(self) -> int:
         """Most cycles per group at which a row is ready before the row above it has been shown."""
         return (self.screen_geometry.row_cycles - 1) // self.groups
@@ -283,124 +280,3 @@ def need_avalon(config: Configuration, what: str) -> None:
     """
     if config.bus != OWN:
         raise ConfigurationError(f"bus: {what} drives the registers itself, by Avalon-MM; leave out {config.bus}")
-
-
-OPTIONS: Mapping[str, FieldInfo] = {
-    name: field for name, field in vars(Options)["__pydantic_fields__"].items() if name != "fixed"
-}
-"""All options by name, with bounds, default and help, except `fixed`, which comes from a scene."""
-
-
-def decided(options: Options) -> Configuration:
-    """Decide everything that the user left open.
-
-    Raises:
-        ValueError: no such design is possible; the text is `option: why, and what to do instead`.
-    """
-    engine, fixed = ENGINES[options.engine], options.fixed
-    if fixed is not None and len(fixed.passes) != options.reflections + 1:
-        raise ValueError(f"fixed: is for {len(fixed.passes) - 1} reflections, not {options.reflections}")
-    rows = _rows(options, engine)
-    scale = _scale(options, engine, rows)
-    for look, reason in engine.lacks.items():
-        if getattr(options, look):
-            raise ValueError(f"{look}: {reason}; {_instead(options)}")
-    if options.pixels > 1 and engine.line_buffered:
-        raise ValueError(f"pixels: the {engine.name} engine has 1 per clock, not {options.pixels}; {_instead(options)}")
-    engine.refuse(options)
-    config = Configuration(
-        engine=options.engine,
-        units=options.units or 1,
-        rectangles=len(fixed.rectangles) if fixed else options.rectangles,
-        reflections=options.reflections,
-        rows=rows,
-        scale=scale,
-        pixels=options.pixels,
-        fraction_bits=options.fraction_bits,
-        rounding=options.rounding,
-        divider_bits=0,
-        colour_bits=options.colour_bits,
-        screen=options.screen,
-        allow_underrun=options.allow_underrun,
-        culling=engine.culls(options) if options.culling is None else options.culling,
-        turn=bool(options.turn),
-        materials=bool(options.materials),
-        patterns=bool(options.patterns),
-        light=bool(options.light),
-        bus=options.bus,
-        fixed=fixed,
-    )
-    columns = config.screen_geometry.columns
-    if columns % config.units:
-        divisors = ", ".join(str(n) for n in range(1, columns + 1) if columns % n == 0)
-        raise ValueError(f"units: {config.units} does not divide the {columns} columns; choose one of {divisors}")
-    config = engine.sized(config, options)
-    engine.check(config)
-    return config
-
-
-def _lacking(engine: Engine, options: Options) -> Iterator[str]:
-    """Yield the wanted features and the screen, in words, that an engine does not have."""
-    yield from (name for look, name in LOOK_NAMES.items() if getattr(options, look) and look in engine.lacks)
-    if options.pixels > 1 and engine.line_buffered:
-        yield f"{options.pixels} pixels per clock"
-    screens = [screen for place, screen in engine.screens.items() if _matches(place, options)]
-    if not screens:
-        yield f"the {options.screen} screen" if options.rows is None else f"{options.rows} rows of {options.screen}"
-    elif options.scale is not None and all(options.scale not in engine.scales(screen) for screen in screens):
-        yield f"scale {options.scale}"
-
-
-def _matches(place: tuple[str, int], options: Options) -> bool:
-    return place[0] == options.screen and options.rows in (None, place[1])
-
-
-def _instead(options: Options) -> str:
-    """Return the engines with all that is wanted or, if there are none, what each of them lacks."""
-    lacking = {name: list(_lacking(engine, options)) for name, engine in ENGINES.items()}
-    able = [as_typed("engine", name) for name, lacks in lacking.items() if not lacks]
-    if able:
-        return f"choose {' or '.join(able)}"
-    lacks = ", ".join(f"{name} lacks {' and '.join(lacks)}" for name, lacks in lacking.items())
-    return f"no engine has all of it: {lacks}; leave something out"
-
-
-def _rows(options: Options, engine: Engine) -> int:
-    allowed = [rows for screen, rows in engine.screens if screen == options.screen]
-    if not allowed:
-        raise ValueError(f"screen: the {engine.name} engine does not have {options.screen}; {_instead(options)}")
-    if options.rows is None:
-        return allowed[0]
-    if options.rows not in allowed:
-        choices = ", ".join(map(str, allowed))
-        known = any(_matches(place, options) for other in ENGINES.values() for place in other.screens)
-        hint = f"; {_instead(options)}" if known else ""
-        raise ValueError(f"rows: {engine.name} has {choices} rows on screen {options.screen}, not {options.rows}{hint}")
-    return options.rows
-
-
-def _scale(options: Options, engine: Engine, rows: int) -> int:
-    allowed = engine.scales(engine.screens[options.screen, rows])
-    if options.scale is None:
-        return allowed[0]
-    if options.scale not in allowed:
-        scales = " or ".join(map(str, sorted(allowed)))
-        others = (other for other in ENGINES.values() if (options.screen, rows) in other.screens)
-        known = any(options.scale in other.scales(other.screens[options.screen, rows]) for other in others)
-        hint = f"; {_instead(options)}" if known else ""
-        raise ValueError(f"scale: the {engine.name} engine shows {rows} rows at {scales}, not {options.scale}{hint}")
-    return options.scale
-
-
-def configure(**values: Any) -> Configuration:
-    """Make a configuration from options, given as values or as text.
-
-    Raises:
-        ConfigurationError: one line that names the option, what was given and what was expected.
-    """
-    try:
-        return decided(Options(**values))
-    except ValidationError as error:
-        raise ConfigurationError(refusal(error.errors(), depth=1)) from None
-    except ValueError as error:
-        raise ConfigurationError(str(error)) from None

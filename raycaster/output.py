@@ -155,7 +155,7 @@ class Console(rich.console.Console):
             yield
 
     def on_broken_pipe(self) -> None:
-        """Leave a broken pipe to `raycaster.options.run_command`."""
+        """Leave a broken pipe to `raycaster.design.options.run_command`."""
         raise BrokenPipeError
 
 

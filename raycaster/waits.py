@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Usual durations of long waits, on two cores of an AMD EPYC; those of builds are in `raycaster.engines`."""
+"""Usual durations of long waits, on two cores of an AMD EPYC; those of builds are among an engine's facts."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
 
-from raycaster.engines import ENGINES
+from raycaster.configuration import Facts
 
 COMMANDS: Mapping[str, str] = {"area": "3 min", "fit": "4 min per scene", "docs": "7 min"}
 """Durations by command, with its default options."""
@@ -17,6 +17,6 @@ def announce(command: str) -> None:
     print(f"{command}: usually {COMMANDS[command]}", file=sys.stderr, flush=True)
 
 
-def building(engine: str) -> str:
+def building(facts: Facts) -> str:
     """Return the usual time to build a model of an engine's design."""
-    return f"usually {ENGINES[engine].usual_build}, once"
+    return f"usually {facts.usual_build}, once"

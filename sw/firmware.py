@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
+from raycaster.design.options import run_command
 from raycaster.errors import UserError, not_installed
 from raycaster.memory_map import MEMORY, MEMORY_BYTES
-from raycaster.options import run_command
 from raycaster.output import Console, Table, printable, replaced
 from raycaster.tools import ToolError, run_program
 

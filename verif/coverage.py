@@ -15,11 +15,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 from raycaster.convert.digest import verilog_digest
+from raycaster.design.decide import configure
+from raycaster.design.options import CommandParser, add_build_option
 from raycaster.golden.catalogue import catalogue
 from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, run_jobs
-from raycaster.options import CommandParser, add_build_option
 from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table, emptied
 from raycaster.scene import find_scene, load_scene, packaged_scenes
@@ -168,7 +169,7 @@ def main(argv: list[str] | None = None) -> int:
     console = Console()
     runs: list[Run] = []
     for engine in arguments.engine or DESIGNS:
-        with announced(console, f"building {DESIGNS[engine].name}", engine):
+        with announced(console, f"building {DESIGNS[engine].name}", DESIGNS[engine].facts):
             model = build_model(DESIGNS[engine], build=arguments.build, flags=FLAGS)
         runs += runs_of(DESIGNS[engine], model, arguments.build)
     kept = Kept(Run.place, arguments.fresh, complete=lambda found: not found[1])

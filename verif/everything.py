@@ -15,14 +15,14 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-from raycaster.configuration import configure
 from raycaster.convert.digest import verilog_digest
-from raycaster.engines import ENGINES
+from raycaster.design.decide import configure
+from raycaster.design.options import CommandParser, outside_make
 from raycaster.errors import UserError
 from raycaster.jobs import add_fresh_option, positive
-from raycaster.options import CommandParser, outside_make
 from raycaster.outcomes import add_keep_option, commit_of, keep
 from raycaster.output import Console
+from raycaster.rtl.engines import ENGINES
 from raycaster.sim import ensure_tools
 from raycaster.verif.seeds import VARIABLE, add_seed_option, drawn
 

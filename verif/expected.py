@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from itertools import accumulate, pairwise
 
 from raycaster.configuration import WORLD_SIZE, Configuration
-from raycaster.engines.exact import PATTERN_LATENCY
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.common.interfaces import Steps
+from raycaster.rtl.engines import engine_of
+from raycaster.rtl.exact.exact_control import PATTERN_LATENCY
 
 EARLY_OUT_AT = 2
 """Cycles from the start of a rectangle that no ray runs towards to its early out, the last cycle of its test."""
@@ -24,7 +25,7 @@ def check_cycles(cycles: Mapping[str, int], config: Configuration) -> None:
     """
     if config.facts.line_buffered:
         # A row is its groups, one after another; less than one cycle per group comes on top.
-        assert cycles["row"] // config.groups <= cycles["group"] <= config.group_cycles, cycles
+        assert cycles["row"] // config.groups <= cycles["group"] <= engine_of(config).group_cycles(config), cycles
         assert config.groups <= cycles["row"] < config.screen_geometry.row_cycles, cycles
     else:
         assert cycles == {"row": config.screen_geometry.beats.visible, "group": 1}, cycles

@@ -21,10 +21,10 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
+from raycaster.design.options import CommandParser, outside_make
 from raycaster.digests import digest
 from raycaster.errors import UserError
 from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, run_jobs
-from raycaster.options import CommandParser, outside_make
 from raycaster.outcomes import commit_of
 from raycaster.output import Console, Table
 from raycaster.verif.mutation.mutate import SEED, leaf_tests, leaves_of_modules, mutate

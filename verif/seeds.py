@@ -9,8 +9,8 @@ import os
 import shlex
 from typing import Any
 
+from raycaster.design.options import command_line
 from raycaster.jobs import natural
-from raycaster.options import command_line
 from raycaster.output import Console
 
 DEFAULT = 20150

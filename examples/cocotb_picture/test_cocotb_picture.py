@@ -16,8 +16,8 @@ from cocotb.triggers import ClockCycles, RisingEdge
 from cocotb_tools.runner import get_runner
 from PIL import Image
 
-from raycaster.configuration import configure
 from raycaster.convert.write import write_verilog
+from raycaster.design.decide import configure
 from raycaster.golden.engines import model_of
 from raycaster.golden.picture import describe_difference, diff_picture, shown
 from raycaster.scene import find_scene, load_scene

@@ -16,7 +16,7 @@ from raycaster.cli.commands import COMMANDS, Command, overview, unknown_command,
 from raycaster.errors import UserError, not_installed
 
 if TYPE_CHECKING:
-    from raycaster.options import CommandParser
+    from raycaster.design.options import CommandParser
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -72,7 +72,7 @@ def run() -> None:
         with suppress(OSError):  # `run_command` then reports it
             print(overview(), flush=True)
             return
-    run_command = importlib.import_module("raycaster.options").run_command
+    run_command = importlib.import_module("raycaster.design.options").run_command
     run_command(main)
 
 

@@ -41,7 +41,7 @@ COMMANDS: Mapping[str, Command] = {
     "area": Command("raycaster.fpga.area", "count the cells of a design", "fpga"),
     "bitstream": Command("raycaster.fpga.bitstream", "make a bitstream for a board", "fpga"),
     "quartus": Command("raycaster.fpga.quartus", "write a Quartus project for an Intel board"),
-    "registers": Command("raycaster.register_views", "write the register map as a C header and a page"),
+    "registers": Command("raycaster.convert.register_views", "write the register map as a C header and a page"),
     "report": Command("raycaster.report.__main__", "compare error, run time and size of designs", "report"),
     "docs": Command("raycaster.docs.__main__", "build the manual", "docs"),
     "results": Command("raycaster.docs.results", "measure the engines and write the manual's tables", "docs"),

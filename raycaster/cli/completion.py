@@ -12,8 +12,8 @@ import shtab
 
 from raycaster.cli.__main__ import parser_of
 from raycaster.cli.commands import COMMANDS
-from raycaster.configuration import OPTIONS
-from raycaster.options import CommandParser
+from raycaster.design.decide import OPTIONS
+from raycaster.design.options import CommandParser
 from raycaster.scene import packaged_scenes
 
 

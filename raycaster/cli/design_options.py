@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from raycaster.complaints import as_typed
-from raycaster.configuration import OPTIONS
-from raycaster.options import CommandParser, shown_default
+from raycaster.design.decide import OPTIONS
+from raycaster.design.options import CommandParser, shown_default
 from raycaster.output import Console, Table
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from raycaster.engines import ENGINES
-from raycaster.engines.engine import LOOK_NAMES
-from raycaster.options import CommandParser
+from raycaster.configuration import LOOK_NAMES
+from raycaster.design.options import CommandParser
 from raycaster.output import Console, Table
+from raycaster.rtl.engines import ENGINES
 from raycaster.scene import load_scene, packaged_scenes
 
 MARKS = {"materials": "mirrors"}
@@ -31,5 +31,5 @@ def main(argv: Sequence[str] | None = None) -> None:
     console = Console()
     console.print(table)
     for look, what in LOOK_NAMES.items():
-        engines = ", ".join(each.name for each in ENGINES.values() if look in each.looks)
+        engines = ", ".join(name for name, each in ENGINES.items() if look in each.facts.looks)
         console.print(f"{MARKS.get(look, look)}: {what}; engines: {engines}", style="dim")

@@ -13,10 +13,11 @@ from importlib.metadata import version
 from pathlib import Path
 
 from raycaster.buses import OWN
-from raycaster.configuration import OPTIONS, Configuration
+from raycaster.configuration import Configuration
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM, component
+from raycaster.convert.register_views import HEADER, write_header
+from raycaster.design.decide import OPTIONS
 from raycaster.hdl.hierarchy import Module, prefixed
-from raycaster.register_views import HEADER, write_header
 from raycaster.registers import address_bits
 from raycaster.rtl.bus.avalon_interface import size_word
 

@@ -4,9 +4,10 @@
 from collections.abc import Mapping
 from typing import Any, get_args
 
-from raycaster.configuration import OPTIONS
-from raycaster.engines import beam, engine, exact
+from raycaster.design.decide import OPTIONS
+from raycaster.rtl.beam import latencies
 from raycaster.rtl.common import widths
+from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
 
 
 def _option(name: str) -> str:
@@ -17,7 +18,8 @@ def _option(name: str) -> str:
 
 VOCABULARY: Mapping[str, Any] = {
     # Latencies and widths, which a docstring may name even if the block's code does not use them.
-    **{name: value for module in (engine, beam, exact, widths) for name, value in vars(module).items()},
+    **{name: value for module in (latencies, widths) for name, value in vars(module).items()},
+    "SETUP_LATENCY": SETUP_LATENCY,
     # Choices that a text depends on.
     **{f"config.{name}": _option(name) for name in OPTIONS},
     "config.fixed": "FIX",

@@ -7,9 +7,9 @@ import argparse
 from pathlib import Path
 
 from raycaster.configuration import Configuration
-from raycaster.design import Design
+from raycaster.design.for_scene import Design
+from raycaster.design.options import add_build_option, add_configuration_options, add_scene_argument
 from raycaster.errors import UserError
-from raycaster.options import add_build_option, add_configuration_options, add_scene_argument
 from raycaster.output import Console, check_replaceable, put, replaced
 from raycaster.scene import find_scene
 from raycaster.sim.job import Job
@@ -103,7 +103,7 @@ def build_and_record(
     find_tool(arguments.simulator)
     config, simulator = design.configuration, arguments.simulator
     try:
-        with announced(console, f"building {config.name} with {simulator}", config.engine):
+        with announced(console, f"building {config.name} with {simulator}", config.facts):
             model = build_model(config, simulator, build=arguments.build, bench=WINDOW_BENCH)
         with console.waiting("simulating"):
             return record(model, design, rows, target)

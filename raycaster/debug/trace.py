@@ -25,10 +25,10 @@ from raycaster.debug.probes.ray import (
 )
 from raycaster.debug.recorder import add_recording_options, build_and_record, pixel_place
 from raycaster.debug.waves import Waves
-from raycaster.design import design_for
+from raycaster.design.for_scene import design_for
+from raycaster.design.options import CommandParser, given_options
 from raycaster.errors import UserError
 from raycaster.golden.picture import colour_text
-from raycaster.options import CommandParser, given_options
 from raycaster.output import Console, Table, printable
 
 PIXEL_EVENTS = ("done", "shown")

@@ -16,9 +16,9 @@ from raycaster.debug.probes.ray import Ray
 from raycaster.debug.recorder import add_recording_options, build_and_record, pixel_place
 from raycaster.debug.wave_files import View, write_files
 from raycaster.debug.waves import Waves
-from raycaster.design import Design, design_for
+from raycaster.design.for_scene import Design, design_for
+from raycaster.design.options import CommandParser, given_options
 from raycaster.errors import UserError
-from raycaster.options import CommandParser, given_options
 from raycaster.output import Console
 
 

@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.complaints import as_typed
-from raycaster.configuration import LOOKS, MOST_RECTANGLES, Configuration, configure
-from raycaster.design import Design, design_for
+from raycaster.configuration import LOOKS, MOST_RECTANGLES, Configuration
+from raycaster.design.decide import configure
+from raycaster.design.for_scene import Design, design_for
 from raycaster.errors import UserError
 from raycaster.fit.unneeded import at_the_edge, covered, label, needed, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene

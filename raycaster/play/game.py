@@ -14,17 +14,18 @@ from pathlib import Path
 from PIL import Image
 from rich.progress import Progress, track
 
-from raycaster.configuration import WORLD_SIZE, configure
+from raycaster.configuration import WORLD_SIZE
 from raycaster.convert.digest import verilog_digest
-from raycaster.design import Design
-from raycaster.errors import UserError
-from raycaster.options import (
+from raycaster.design.decide import configure
+from raycaster.design.for_scene import Design
+from raycaster.design.options import (
     CommandParser,
     add_build_option,
     add_configuration_options,
     add_scene_argument,
     given_options,
 )
+from raycaster.errors import UserError
 from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table, emptied, printable
 from raycaster.play.machine import Machine, build_machine
@@ -170,7 +171,7 @@ def _film_game(arguments: argparse.Namespace) -> int:
     build, output = arguments.build, arguments.output or arguments.build / "game"
     firmware = build_firmware((build / "firmware").absolute())
     try:
-        with announced(console, f"building {configuration.name} with a processor", configuration.engine):
+        with announced(console, f"building {configuration.name} with a processor", configuration.facts):
             model = build_model(configuration, "verilator", build=build, bench=SYSTEM_BENCH)
         with Progress(console=console, transient=True) as bars, ThreadPoolExecutor(1) as pool:
             bar = bars.add_task("frames", total=len(buttons))

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.configuration import WORLD_SIZE, Configuration
-from raycaster.design import Design, design_for
-from raycaster.engines import ENGINES, EXACT
+from raycaster.design.for_scene import Design, design_for
 from raycaster.play.system import FASTEST
 from raycaster.program import basis_fields, light_fields, scene_words
 from raycaster.registers import register_map
+from raycaster.rtl.engines import ENGINES, EXACT
 from raycaster.scene import Camera, Light, Scene, load_scene
 
 STEP = 3.0
@@ -47,7 +47,7 @@ def design_to_walk(path: Path, options: Mapping[str, Any]) -> Design:
     """
     defaults: dict[str, Any] = {"engine": EXACT.name} if load_scene(path).light else dict(FASTEST)
     engine = ENGINES.get(options.get("engine", defaults["engine"]))
-    return design_for(path, options, defaults | ({"turn": True} if engine and "turn" in engine.looks else {}))
+    return design_for(path, options, defaults | ({"turn": True} if engine and "turn" in engine.facts.looks else {}))
 
 
 class Walker:

@@ -13,10 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from raycaster.configuration import Configuration, configure
-from raycaster.errors import UserError, not_installed
-from raycaster.memory_map import BUTTON_NAMES
-from raycaster.options import (
+from raycaster.configuration import Configuration
+from raycaster.design.decide import configure
+from raycaster.design.options import (
     CommandParser,
     add_build_option,
     add_configuration_options,
@@ -24,6 +23,8 @@ from raycaster.options import (
     command_line,
     given_options,
 )
+from raycaster.errors import UserError, not_installed
+from raycaster.memory_map import BUTTON_NAMES
 from raycaster.output import Console
 from raycaster.play.machine import Frame, Machine, build_machine
 from raycaster.play.system import FASTEST
@@ -228,7 +229,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             console.print(f"{button}: {' or '.join(held)}")
         if walker and config.turn:
             console.print("turn and look: also drag with the mouse")
-        with announced(console, f"building {config.name}", config.engine):
+        with announced(console, f"building {config.name}", config.facts):
             command = build_machine(config, arguments.build, processor=walker is None)
         with Machine(command, config, program) as machine:
             play = walk_through(machine, walker, window) if walker else machine.frame

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.convert.digest import verilog_digest
+from raycaster.design.options import CommandParser
 from raycaster.errors import UserError
 from raycaster.jobs import add_job_options, executors
-from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, add_keep_option, keep, kept_outcome
 from raycaster.output import Console
 from raycaster.report.designs import design_chapter, find_designs, of_kept, to_keep

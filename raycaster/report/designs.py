@@ -14,12 +14,14 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from raycaster.configuration import OPTIONS, Configuration, ConfigurationError, Rounding, configure
+from raycaster.configuration import Configuration, ConfigurationError, Rounding
 from raycaster.convert.take_home import TOP
+from raycaster.design.decide import OPTIONS, configure
 from raycaster.outcomes import RESULTS, kept_outcome
 from raycaster.report import plots
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
 from raycaster.report.points import Point, Sweep, predicted_cycles, required_mhz
+from raycaster.rtl.engines import engine_of
 
 WORST_SCENE = "raycaster/scenes/mirror_room.toml"
 """Scene for the simulations: it fills the designs' rectangle tables, so no row of another scene takes longer."""
@@ -69,7 +71,7 @@ class Design:
     @property
     def title(self) -> str:
         """The design in a few words."""
-        return self.config.facts.describe(self.config)
+        return engine_of(self.config).describe(self.config)
 
     @property
     def cells(self) -> int:
@@ -233,11 +235,11 @@ def work_precision(designs: Sequence[Design], cost: str) -> Figure:
     plots.ticks(upper.yaxis, lambda share: f"{100 * share:g}%")
     plots.ticks(lower.xaxis, "{:,.0f}".format if cost == "cells" else "{:g}".format)
     lower.set(xlabel=WORDS[cost], ylabel="no error", ylim=(len(exact) - 0.4, -0.6))
-    names = [f"{one.config.engine} {one.config.facts.label(one.config)}" for one in exact]
+    names = [f"{one.config.engine} {engine_of(one.config).label(one.config)}" for one in exact]
     lower.set_yticks(range(len(exact)), names, fontsize=plots.LABEL_POINTS)
     line = [getattr(one, cost) for one in best], [one.error for one in best]
     upper.step(*line, where="post", color=best[0].config.facts.colour, linewidth=0.9, alpha=0.7)
-    labels = [(x, y, one.config.facts.label(one.config)) for x, y, one in zip(*line, best, strict=True)]
+    labels = [(x, y, engine_of(one.config).label(one.config)) for x, y, one in zip(*line, best, strict=True)]
     xs, ys = [getattr(one, cost) for one in rounded], [one.error for one in rounded]
     plots.label(upper, labels, xs, ys, expand=(1.15, 1.3), force_text=(0.3, 0.6))
     return figure

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from raycaster.configuration import configure
+from raycaster.design.decide import configure
 from raycaster.report import plots
 from raycaster.report.extent import Extent
 from raycaster.report.page import Chapter, Data, Plot, Section, Table

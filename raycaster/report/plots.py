@@ -19,11 +19,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from raycaster.configuration import Rounding
-from raycaster.engines import EXACT, SEED
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong, diff_picture
 from raycaster.golden.seed_engine import SeedModel
 from raycaster.report.points import Point, name_of
+from raycaster.rtl.engines import EXACT, SEED
 from raycaster.screens import SCREENS
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ styled = mpl.rc_context(STYLE)
 
 LABEL_POINTS = 7.5
 
-VERMILION, BLUE, ORANGE, GREY = SEED.colour, EXACT.colour, "#E69F00", "#7f7f7f"
+VERMILION, BLUE, ORANGE, GREY = SEED.facts.colour, EXACT.facts.colour, "#E69F00", "#7f7f7f"
 """Colours of Okabe and Ito, like the engines' colours, and a grey."""
 
 COLOURS = {"truncate": VERMILION, "nearest": BLUE}

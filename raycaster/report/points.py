@@ -19,9 +19,11 @@ from typing import Any
 import numpy as np
 
 import raycaster
-from raycaster.configuration import LOOKS, Configuration, Rounding, configure
+from raycaster.configuration import LOOKS, Configuration, Rounding
 from raycaster.convert.take_home import TOP
-from raycaster.design import design_for
+from raycaster.design.decide import configure
+from raycaster.design.for_scene import design_for
+from raycaster.design.options import add_configuration_options, as_options, given_options, run_command
 from raycaster.digests import digest, sources_digest, tools_digest
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix, fixed_rectangle, with_camera
@@ -36,8 +38,8 @@ from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import Rectangles
 from raycaster.jobs import Kept, positive, run_jobs
-from raycaster.options import add_configuration_options, as_options, given_options, run_command
 from raycaster.output import Console
+from raycaster.rtl.engines import engine_of
 from raycaster.scene import Scene, dump_scene, load_scene
 from raycaster.screens import SCREENS
 from raycaster.sim.job import Job
@@ -263,7 +265,8 @@ def predicted_cycles(config: Configuration) -> int:
     An engine without a line buffer computes a pixel as often as the monitor shows it.
     """
     screen = config.screen_geometry
-    return config.group_cycles * config.groups * screen.rows * (1 if config.facts.line_buffered else screen.doubling**2)
+    times = 1 if config.facts.line_buffered else screen.doubling**2
+    return engine_of(config).group_cycles(config) * config.groups * screen.rows * times
 
 
 def required_mhz(config: Configuration) -> float:

@@ -9,8 +9,8 @@ import subprocess
 import sys
 from dataclasses import dataclass
 
+from raycaster.design.options import run_command
 from raycaster.errors import UserError
-from raycaster.options import run_command
 
 INSTALL: dict[str, tuple[str, ...]] = {
     "apt-get": ("apt-get", "install", "-y", "-q"),

@@ -8,7 +8,8 @@ import json
 import os
 from typing import Any
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
+from raycaster.design.decide import configure
 from raycaster.scene import Scene
 
 JOB_VARIABLE = "RAYCASTER_JOB"
@@ -47,7 +48,9 @@ class Job:
 
     def environment(self) -> dict[str, str]:
         """Return the environment variables that pass this job to a simulation."""
-        return {JOB_VARIABLE: json.dumps(dataclasses.asdict(self))}
+        values = dataclasses.asdict(self)
+        del values["configuration"]["facts"]  # the engine's name stands for them
+        return {JOB_VARIABLE: json.dumps(values)}
 
     @classmethod
     def from_environment(cls) -> Job:

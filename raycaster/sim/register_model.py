@@ -12,6 +12,7 @@ from raycaster.configuration import Configuration
 from raycaster.golden.model import Model
 from raycaster.golden.world import Rectangles
 from raycaster.registers import Register, register_map
+from raycaster.rtl.engines import engine_of
 from raycaster.scene import UNTURNED, Basis, Light
 from raycaster.screens import Screen
 
@@ -446,7 +447,7 @@ class RegisterFile:
         expected, name = self.agent.answer[1], self._answered
         if name == "cycles":
             cycles = self.agent.registers[name].unpack(word)
-            most = (self.config.screen_geometry.row_cycles, self.config.group_cycles)
+            most = (self.config.screen_geometry.row_cycles, engine_of(self.config).group_cycles(self.config))
             seen = (cycles["row"], cycles["group"])
             for least, value, bound in zip(self._least_cycles, seen, most, strict=True):
                 assert least <= value <= bound, f"cycles reads {cycles}; at least {self._least_cycles}, at most {most}"

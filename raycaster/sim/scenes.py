@@ -21,12 +21,8 @@ from rich.text import Text
 
 from raycaster.configuration import Configuration
 from raycaster.convert.digest import verilog_digest
-from raycaster.design import Design, left_out, packaged_for
-from raycaster.engines import ENGINES, SEED
-from raycaster.errors import UserError
-from raycaster.fit.fixing import add_fix_option, design_of
-from raycaster.jobs import processes
-from raycaster.options import (
+from raycaster.design.for_scene import Design, left_out, packaged_for
+from raycaster.design.options import (
     CommandParser,
     add_build_option,
     add_configuration_options,
@@ -34,8 +30,12 @@ from raycaster.options import (
     command_line,
     given_options,
 )
+from raycaster.errors import UserError
+from raycaster.fit.fixing import add_fix_option, design_of
+from raycaster.jobs import processes
 from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import MARK, Console, Table, check_replaceable, printable, put, remove, replaced
+from raycaster.rtl.engines import ENGINES, SEED
 from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.job import Job
@@ -135,7 +135,7 @@ def _shared(scenes: Mapping[Path, Scene]) -> dict[Path, dict[str, Any]]:
     groups: dict[bool, dict[Path, Scene]] = defaultdict(dict)
     for path, scene in scenes.items():
         if scene.lacks(()):
-            groups[bool(scene.lacks(SEED.looks))][path] = scene
+            groups[bool(scene.lacks(SEED.facts.looks))][path] = scene
     found: dict[Path, dict[str, Any]] = {}
     for group in groups.values():
         if len(group) > 1:
@@ -257,7 +257,7 @@ def build_models(
             with ExitStack() as shown:
                 if mark.exists():
                     what = f"building {configuration.name} with {simulator}"
-                    shown.enter_context(console.waiting(what, building(configuration.engine)))
+                    shown.enter_context(console.waiting(what, building(configuration.facts)))
                 model, seconds = future.result()
             took = f"built in {seconds:.1f} s" if model.fresh else "was built before"
             console.print(f"{configuration.name} ({simulator}) {took}")
@@ -446,7 +446,7 @@ def _planned(arguments: argparse.Namespace, console: Console) -> list[Design]:
             console.print(f"left out, as each {reason}: {', '.join(names)}", soft_wrap=True)
     small = dict(GATES_OPTIONS) if gates else {}
     engine = ENGINES.get(options.get("engine", ""))
-    if engine is not None and not engine.line_buffered:
+    if engine is not None and not engine.facts.line_buffered:
         small.pop("units", None)  # such an engine has one per pixel of a clock
     return plan_runs(paths, options, small, arguments.fix, console)
 

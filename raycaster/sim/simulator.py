@@ -36,11 +36,11 @@ import raycaster.convert
 import raycaster.hdl
 import raycaster.rtl
 from raycaster.buses import OWN
-from raycaster.configuration import Configuration
+from raycaster.configuration import Configuration, Facts
+from raycaster.design.options import BUILD
 from raycaster.digests import sources_digest, tools_digest
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, clocks_per_bit
-from raycaster.options import BUILD
 from raycaster.output import Console, emptied, remove
 from raycaster.places import ODD_FOR_SHELLS, ODD_FOR_TOOLS, odd_character
 from raycaster.registers import address_bits
@@ -536,11 +536,11 @@ def when_made(begun: Callable[[], object]) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def announced(console: Console, what: str, engine: str) -> Iterator[None]:
+def announced(console: Console, what: str, facts: Facts) -> Iterator[None]:
     """Show that a model is being built, unless it is there already."""
     with (
         contextlib.ExitStack() as shown,
-        when_made(lambda: shown.enter_context(console.waiting(what, building(engine)))),
+        when_made(lambda: shown.enter_context(console.waiting(what, building(facts)))),
     ):
         yield
 

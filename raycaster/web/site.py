@@ -14,15 +14,16 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.complaints import LONGEST_SHOWN
-from raycaster.configuration import LOOKS, MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
-from raycaster.engines import SEED
+from raycaster.configuration import LOOKS, MOST_RECTANGLES, WORLD_SIZE, Configuration
+from raycaster.design.decide import configure
+from raycaster.design.options import CommandParser, add_build_option
 from raycaster.errors import UserError
 from raycaster.jobs import processes, run_jobs
 from raycaster.memory_map import BUTTON_NAMES
-from raycaster.options import CommandParser, add_build_option
 from raycaster.output import Console, replaced
 from raycaster.play.walk import DRAG, STEEPEST, STEP, TURN, TURNS, WALKS
 from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
+from raycaster.rtl.engines import SEED
 from raycaster.scene import COMPLAINTS, PATTERN_KEYS, PATTERNS, Scene, packaged_scenes
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
@@ -133,7 +134,7 @@ def _settings(*, test: bool) -> dict[str, Any]:
             ],
         },
         "game": {"buttons": list(BUTTON_NAMES), "keys": keys(GAME_KEYS)},
-        "seed": {"fractions": list(FRACTIONS), "lacks": dict(SEED.lacks)},
+        "seed": {"fractions": list(FRACTIONS), "lacks": dict(SEED.facts.lacks)},
     }  # fmt: skip
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import raycaster.sw
 from raycaster.configuration import Configuration
+from raycaster.design.options import BUILD
 from raycaster.errors import UserError, not_installed
-from raycaster.options import BUILD
 from raycaster.play.machine import MACHINE as MACHINE_HEADER
 from raycaster.play.machine import SIGNS, TOP, machine_sources
 from raycaster.sim.simulator import VERILATED_DEFINITIONS, find_tool, library_sources, made, models, verilate

@@ -6,7 +6,11 @@ from itertools import pairwise
 from myhdl import always, block, concat, instances
 
 from raycaster.configuration import Configuration
-from raycaster.engines.beam import (
+from raycaster.hdl.signals import bit, side_by_side, unsigned
+from raycaster.rtl.beam.beam_pass import beam_pass
+from raycaster.rtl.beam.colour_blend import colour_blend
+from raycaster.rtl.beam.hit_cells import hit_cells
+from raycaster.rtl.beam.latencies import (
     ENTRY_LATENCY,
     LOOK_UP_LATENCY,
     cell_latency,
@@ -15,10 +19,6 @@ from raycaster.engines.beam import (
     tested,
     winner_latency,
 )
-from raycaster.hdl.signals import bit, side_by_side, unsigned
-from raycaster.rtl.beam.beam_pass import beam_pass
-from raycaster.rtl.beam.colour_blend import colour_blend
-from raycaster.rtl.beam.hit_cells import hit_cells
 from raycaster.rtl.beam.look_up import look_up
 from raycaster.rtl.beam.mirror_look_up import mirror_look_up
 from raycaster.rtl.beam.ray_fold import ray_fold

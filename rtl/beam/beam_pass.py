@@ -7,9 +7,9 @@ from functools import partial
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.engines.beam import contest_latency, is_staged, rounds
 from raycaster.hdl.signals import side_by_side, tied
 from raycaster.rtl.beam.fold_tester import fold_tester
+from raycaster.rtl.beam.latencies import contest_latency, is_staged, rounds
 from raycaster.rtl.beam.nearest_of import nearest_of
 from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.beam.rect_walker import rect_walker

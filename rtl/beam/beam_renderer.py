@@ -4,9 +4,9 @@
 from myhdl import always_comb, always_seq, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.engines.beam import beam_latency
 from raycaster.hdl.signals import bit, bits_for, signed, unsigned
 from raycaster.rtl.beam.beam_caster import beam_caster
+from raycaster.rtl.beam.latencies import beam_latency
 from raycaster.rtl.common.interfaces import Scan
 from raycaster.rtl.common.records import shown_of
 from raycaster.rtl.common.widths import CYCLE_BITS, factor_bits, row_bits

@@ -3,8 +3,8 @@
 
 from myhdl import always, always_comb, block, concat, instances
 
-from raycaster.engines.engine import SMALLEST_CELL_BITS
 from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.rtl.common.widths import SMALLEST_CELL_BITS
 
 
 @block

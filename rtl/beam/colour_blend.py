@@ -4,11 +4,11 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.engines.beam import MIX_LATENCY, mixes
 from raycaster.hdl.signals import bit, tied, unconnected, unsigned
 from raycaster.rtl.beam.colour_mean import colour_mean
 from raycaster.rtl.beam.colour_mix import colour_mix
 from raycaster.rtl.beam.colour_seen import colour_seen
+from raycaster.rtl.beam.latencies import MIX_LATENCY, mixes
 from raycaster.rtl.common.delay_line import delay_line
 from raycaster.rtl.common.records import seen_of, shade_of
 

@@ -6,11 +6,10 @@ from itertools import pairwise
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS
-from raycaster.engines.engine import SMALLEST_CELL_BITS
 from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.beam.cell_step import cell_step
 from raycaster.rtl.common.records import CellDivision
-from raycaster.rtl.common.widths import CELL_BITS
+from raycaster.rtl.common.widths import CELL_BITS, SMALLEST_CELL_BITS
 
 
 @block

@@ -4,9 +4,9 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
-from raycaster.engines.beam import CELL_LATENCY
 from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.beam.hit_cell import hit_cell
+from raycaster.rtl.beam.latencies import CELL_LATENCY
 from raycaster.rtl.common.by_axis import along_u, along_v, by_axis
 from raycaster.rtl.common.delay_line import delay_line
 from raycaster.rtl.common.records import winner_of

@@ -4,8 +4,8 @@
 from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
-from raycaster.engines.beam import AIM_LATENCY
 from raycaster.hdl.signals import signed, unsigned
+from raycaster.rtl.beam.latencies import AIM_LATENCY
 from raycaster.rtl.common.widths import BASIS_BITS, exact_slope_bits, factor_bits
 
 

@@ -7,7 +7,6 @@ The text for each attribute becomes the comment above that port in Verilog.
 from typing import ClassVar
 
 from raycaster.configuration import Configuration
-from raycaster.engines.exact import AIM_CYCLES
 from raycaster.hdl.records import Interface
 from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.common.records import rect_of
@@ -163,6 +162,10 @@ class Direction(Interface):
 
     def __init__(self, bits: int):
         self.x, self.y, self.z = (signed(bits) for _ in range(3))
+
+
+AIM_CYCLES = 4
+"""Cycles from the end of a pass to the start of the shadow pass: the shadow ray, a component per cycle."""
 
 
 class Steps(Interface):

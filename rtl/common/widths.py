@@ -34,6 +34,9 @@ KIND_BITS = (len(PATTERNS) - 1).bit_length()
 CELL_BITS = 3
 """A pattern's kind, and log2 of its cell size in world units, minus three."""
 
+SMALLEST_CELL_BITS = 3
+"""log2 of the size of a pattern's smallest cell, in world units."""
+
 WORD_BITS = 32
 LANES = 4
 """Bytes of a word, each with its own enable."""

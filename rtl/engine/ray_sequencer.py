@@ -16,7 +16,7 @@ RayState = enum("IDLE", "GENERATE", "TRACE", "BLEND", "DONE")
 
 def ends_early(config: Configuration) -> bool:
     """Return True if a design ends rectangles early, which takes more cycles per rectangle than early_out does."""
-    return config.culling and config.rect_cycles > EARLY_OUT_AT + 1
+    return config.culling and config.facts.divides and config.divider_steps > EARLY_OUT_AT + 1
 
 
 @block

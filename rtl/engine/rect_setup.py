@@ -10,6 +10,9 @@ from raycaster.rtl.common.records import Look
 from raycaster.rtl.common.widths import AXIS_BITS, DISTANCE_BITS, exact_slope_bits, index_bits
 from raycaster.rtl.engine.array_multiplier import array_multiplier
 
+SETUP_LATENCY = 5
+"""Cycles from start_line to the first rectangle's products."""
+
 
 @block
 def rect_setup(

@@ -4,8 +4,8 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS
-from raycaster.engines.engine import SMALLEST_CELL_BITS
 from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.rtl.common.widths import SMALLEST_CELL_BITS
 from raycaster.rtl.engine.divider_step import divider_step
 from raycaster.rtl.exact.hit_component import hit_component
 

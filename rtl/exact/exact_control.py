@@ -4,12 +4,17 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.engines.exact import PATTERN_LATENCY, WRITE_AT
 from raycaster.hdl.signals import bit, tied, unconnected, unsigned
 from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.common.records import surface_of
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 from raycaster.rtl.exact.shadow_sequencer import shadow_sequencer
+
+WRITE_AT = 2
+"""Bit of in_flight that is set three cycles after find_intersection, the latency of a unit's test."""
+
+PATTERN_LATENCY = 6
+"""Cycles until the cells of a pattern are known: three each for u and v, with two bits per cycle."""
 
 
 @block
@@ -48,7 +53,7 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
     sequencer = ray_sequencer(
         clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, picture=picture, rects=rects, steps=steps,
         in_flight=in_flight, fate=fate, shadow_pass=shadow_pass, early_out=tied(0, 1), done=done,
-        rect_cycles=config.rect_cycles, config=config,
+        rect_cycles=1, config=config,
     )  # fmt: skip
 
     if config.light:

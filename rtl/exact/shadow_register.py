@@ -4,8 +4,8 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS
-from raycaster.engines.exact import AIM_CYCLES
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.rtl.common.interfaces import AIM_CYCLES
 
 
 @block

@@ -3,8 +3,8 @@
 
 from myhdl import Signal, always, always_comb, block, enum, instances
 
-from raycaster.engines.exact import AIM_CYCLES
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.rtl.common.interfaces import AIM_CYCLES
 
 ShadowState = enum("WAIT", "AIM", "TEST")
 

@@ -4,7 +4,7 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
-from raycaster.engines.engine import SMALLEST_CELL_BITS
+from raycaster.rtl.common.widths import SMALLEST_CELL_BITS
 
 
 @block

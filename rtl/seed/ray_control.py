@@ -4,11 +4,16 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.engines.seed import LOAD_AT, WRITE_AFTER
 from raycaster.hdl.signals import bit, tied, unsigned
 from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.engine.ray_sequencer import ends_early, ray_sequencer
+
+LOAD_AT = 2
+"""Cycles from find_intersection to load_divider; store_quotient follows after the cycles of a division."""
+
+WRITE_AFTER = 2
+"""Cycles from store_quotient to write_z_buf."""
 
 
 @block

@@ -5,23 +5,18 @@ from myhdl import always_comb, block, instances
 
 from raycaster.buses import BUSES
 from raycaster.configuration import Configuration
-from raycaster.engines import BEAM
 from raycaster.hdl.signals import bit, derived_clock, tied, unconnected, unsigned
 from raycaster.registers import address_bits
-from raycaster.rtl.beam.beam_renderer import beam_renderer
 from raycaster.rtl.bus.avalon_interface import avalon_interface
 from raycaster.rtl.bus.buses import BRIDGES
 from raycaster.rtl.common.clock_gate import clock_gate
 from raycaster.rtl.common.interfaces import AvalonPort, Picture, Progress, Rects, SceneBus
 from raycaster.rtl.common.records import camera_of
 from raycaster.rtl.common.widths import WORD_BITS
+from raycaster.rtl.engines import engine_of
 from raycaster.rtl.scene.camera_mem import camera_mem
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import rect_rom
-from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
-
-RENDERERS = {BEAM.name: beam_renderer}
-"""The block that fills the screen, by engine; `ray_caster_renderer` for the others."""
 
 
 @block
@@ -84,7 +79,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
             scene_awake.next = bus.write or bus.commit or bus.go_live or progress.busy
 
         gate = clock_gate(clk, reset, awake=scene_awake, gated_clk=scene_clk)
-    renderer = RENDERERS.get(config.engine, ray_caster_renderer)(
+    renderer = engine_of(config).renderer(
         clk, reset, picture=picture, camera=camera, rects=rects, progress=progress, vga=vga, config=config
     )
 

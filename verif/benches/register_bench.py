@@ -10,6 +10,7 @@ import numpy as np
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import ClockCycles
 
+from raycaster.rtl.engines import engine_of
 from raycaster.sim.harness import Harness
 from raycaster.sim.register_model import EVERY_LANE, SceneFollower
 from raycaster.verif.expected import check_cycles
@@ -51,7 +52,7 @@ async def disabled_rectangles_cost_nothing(bench: HierarchyObject) -> None:
     all_cycles = await bus.read("cycles")
     check_cycles(all_cycles, configuration)
     if len(scene.rect) == configuration.rectangles and not (configuration.culling or configuration.light):
-        assert all_cycles["group"] == configuration.group_cycles
+        assert all_cycles["group"] == engine_of(configuration).group_cycles(configuration)
     await bus.write("cycles")
     assert await bus.read("cycles") == {"row": 0, "group": 0}, "a write clears the cycle counters"
 
@@ -61,7 +62,7 @@ async def disabled_rectangles_cost_nothing(bench: HierarchyObject) -> None:
     await bus.commit(reflections=reflections)
     await harness.expect(few, reflections, "every third rectangle")
     few_cycles = await bus.read("cycles")
-    saved = (len(scene.rect) - len(few.rect)) * (reflections + 1) * configuration.rect_cycles
+    saved = (len(scene.rect) - len(few.rect)) * (reflections + 1) * engine_of(configuration).rect_cycles(configuration)
     fallen = all_cycles["group"] - few_cycles["group"]
     assert 0 <= fallen <= saved if configuration.culling else fallen == saved, (all_cycles, few_cycles)
     assert (few_cycles["row"] < all_cycles["row"]) == (saved > 0)

@@ -18,7 +18,8 @@ import numpy as np
 from PIL import Image
 
 from raycaster.configuration import Configuration
-from raycaster.design import Design
+from raycaster.design.for_scene import Design
+from raycaster.design.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.bitstream import write_project
@@ -26,7 +27,6 @@ from raycaster.fpga.board import Board, OpenBoard, QuartusBoard, board_names, fi
 from raycaster.golden.engines import model_of
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
-from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.output import Console, emptied, printable
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import find_scene

@@ -9,7 +9,8 @@ from functools import partial
 from typing import Any
 
 from raycaster.buses import BUSES
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
+from raycaster.design.decide import configure
 from raycaster.fit.fixing import fixed_rectangle
 from raycaster.fixed import FixedScene
 from raycaster.hdl.signals import bit, reset_signal, unsigned

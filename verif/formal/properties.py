@@ -26,9 +26,11 @@ import tomllib
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from raycaster.configuration import Configuration, configure
-from raycaster.engines import ENGINES, SEED
-from raycaster.engines.beam import (
+from raycaster.configuration import Configuration
+from raycaster.design.decide import configure
+from raycaster.hdl.signals import bits_for
+from raycaster.registers import address_bits, register_map
+from raycaster.rtl.beam.latencies import (
     AIM_LATENCY,
     TESTER_LATENCY,
     beam_latency,
@@ -38,12 +40,11 @@ from raycaster.engines.beam import (
     is_staged,
     mixes,
 )
-from raycaster.engines.engine import SETUP_LATENCY
-from raycaster.engines.exact import AIM_CYCLES
-from raycaster.hdl.signals import bits_for
-from raycaster.registers import address_bits, register_map
 from raycaster.rtl.common import widths
+from raycaster.rtl.common.interfaces import AIM_CYCLES
 from raycaster.rtl.common.records import camera_of, candidate_of, look_fields, mirror_of, rect_of, surface_of
+from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
+from raycaster.rtl.engines import ENGINES, SEED, engine_of
 from raycaster.screens import Screen
 from raycaster.verif.formal.alone import Alone, BridgeAlone, FoldAlone, TableAlone, TesterAlone, VideoAlone
 from raycaster.verif.formal.prover import Property
@@ -94,15 +95,17 @@ ALONE: dict[str, Callable[[Facts], Alone]] = {
 
 FACTS: dict[str, Callable[[Configuration], int]] = {
     # Options, and what is decided from them.
-    "SEED": lambda config: config.engine == SEED.name,
+    "SEED": lambda config: config.engine == SEED.facts.name,
     **{
         name.upper(): lambda config, name=name: getattr(config, name)
         for name in (
             "rectangles", "reflections", "units", "pixels", "groups", "fraction_bits", "divider_bits", "colour_bits",
-            "culling", "turn", "materials", "patterns", "light", "rect_cycles", "divider_steps", "pass_latency",
-            "group_cycles", "scale",
+            "culling", "turn", "materials", "patterns", "light", "divider_steps", "scale",
         )
     },
+    "RECT_CYCLES": lambda config: engine_of(config).rect_cycles(config),
+    "PASS_LATENCY": lambda config: engine_of(config).pass_latency(config),
+    "GROUP_CYCLES": lambda config: engine_of(config).group_cycles(config),
     "NEAREST": lambda config: config.rounding == "nearest",
     "MIXES": mixes,
     "STAGED": is_staged,
@@ -133,7 +136,7 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
     "LIGHT_BITS": widths.light_slope_bits,
     "AIM_CYCLES": lambda config: AIM_CYCLES,
     "STEEPEST": widths.steepest_slope,
-    "CYCLE_BITS": lambda config: bits_for(config.rect_cycles),
+    "CYCLE_BITS": lambda config: bits_for(engine_of(config).rect_cycles(config)),
     "LOOK_BITS": lambda config: sum(look_fields(config.materials, config.patterns).values()),
     "CAMERA_BITS": lambda config: len(camera_of(config).word),
     "RECT_BITS": lambda config: len(rect_of(config).word),

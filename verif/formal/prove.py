@@ -21,9 +21,9 @@ from typing import Any
 from rich.text import Text
 
 from raycaster.convert.digest import verilog_digest
+from raycaster.design.options import CommandParser
 from raycaster.errors import UserError, not_installed
 from raycaster.jobs import add_job_options, executors, positive, run_jobs
-from raycaster.options import CommandParser
 from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table
 from raycaster.tools import TIMEOUT

@@ -12,14 +12,15 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 from raycaster.convert.write import write_verilog
+from raycaster.design.decide import configure
 from raycaster.digests import uncommented
-from raycaster.engines import ENGINES
 from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.hierarchy import convert_hierarchy
 from raycaster.hdl.verilog_style import without_power_up
 from raycaster.output import emptied
+from raycaster.rtl.engines import ENGINES
 from raycaster.tools import TIMEOUT, ToolError, find_program, run_program, run_yosys
 from raycaster.verif.formal.alone import Alone
 from raycaster.verif.formal.lemmas import SOLVERS, Lemma
@@ -138,8 +139,8 @@ def inputs_of(proof: Property, depth: int) -> str:
 def with_all_looks() -> list[Configuration]:
     """Return a design of each engine that has all looks, whose Verilog decides figures about all designs."""
     return [
-        configure(engine=engine.name, allow_underrun=True, **dict.fromkeys(engine.looks, True))
-        for engine in ENGINES.values()
+        configure(engine=name, allow_underrun=True, **dict.fromkeys(engine.facts.looks, True))
+        for name, engine in ENGINES.items()
     ]
 
 

@@ -34,10 +34,10 @@ from typing import Any
 import raycaster
 from raycaster import golden, hdl, rtl
 from raycaster.convert.digest import verilog_digest
+from raycaster.design.options import CommandParser
 from raycaster.digests import digest
 from raycaster.errors import UserError
 from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, positive, run_jobs
-from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, add_keep_option, keep, kept_outcome
 from raycaster.output import Console, Table, emptied
 from raycaster.sim import ensure_tools

@@ -17,18 +17,19 @@ from pathlib import Path
 
 import raycaster
 from raycaster import golden, sim
-from raycaster.configuration import MOST_REFLECTIONS, Configuration, configure
+from raycaster.configuration import MOST_REFLECTIONS, Configuration
 from raycaster.convert.digest import verilog_digest
-from raycaster.digests import digest
-from raycaster.golden.catalogue import catalogue
-from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, natural, positive, run_jobs
-from raycaster.options import (
+from raycaster.design.decide import configure
+from raycaster.design.options import (
     CommandParser,
     add_build_option,
     add_configuration_options,
     command_line,
     given_options,
 )
+from raycaster.digests import digest
+from raycaster.golden.catalogue import catalogue
+from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, natural, positive, run_jobs
 from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table, emptied
 from raycaster.sim.job import Job
@@ -151,7 +152,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if first is None:
             first = SCENES_PER_SEED * drawn("verify soak", arguments.seed, None, console, **options)
         seeds = range(first, first + arguments.seeds)
-    with announced(console, f"building {configuration.name}", configuration.engine):
+    with announced(console, f"building {configuration.name}", configuration.facts):
         model = build_model(configuration, arguments.simulator, build=arguments.build)
     output.mkdir(parents=True, exist_ok=True)
     started = time.perf_counter()

@@ -20,12 +20,13 @@ from rich.console import Console
 from vectors import Bench as LeafBench
 
 from raycaster.cli.__main__ import main
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 from raycaster.convert import digest
+from raycaster.design.decide import configure
+from raycaster.design.options import outside_make, run_command
 from raycaster.hdl.elaboration import forgetting
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.verilog_style import without_power_up
-from raycaster.options import outside_make, run_command
 from raycaster.output import MARK
 from raycaster.sim import ensure_tools
 from raycaster.sim.job import Job

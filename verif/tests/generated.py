@@ -10,7 +10,8 @@ import hypothesis
 from hypothesis import strategies as st
 
 from raycaster.buses import BUSES
-from raycaster.engines import ENGINES, Engine
+from raycaster.configuration import Facts
+from raycaster.rtl.engines import ENGINES
 from raycaster.verif.seeds import seed
 
 
@@ -20,14 +21,14 @@ def examples(count: int) -> Callable:
     return lambda test: hypothesis.seed(seed())(settings(test))
 
 
-def engine_options(engine: Engine) -> dict[str, st.SearchStrategy]:
+def engine_options(facts: Facts) -> dict[str, st.SearchStrategy]:
     """Return options of an engine in addition to those of every engine."""
-    found: dict[str, st.SearchStrategy] = {"screen": st.sampled_from(sorted({name for name, _ in engine.screens}))}
-    found |= {look: st.booleans() for look in ("turn", "light") if look in engine.looks}
-    if not engine.line_buffered:
+    found: dict[str, st.SearchStrategy] = {"screen": st.sampled_from(sorted({name for name, _ in facts.screens}))}
+    found |= {look: st.booleans() for look in ("turn", "light") if look in facts.looks}
+    if not facts.line_buffered:
         return found | {"scale": st.sampled_from([1, 2, 4])}
     found |= {"units": st.sampled_from([1, 2, 4, 8, 16, 32, 64]), "culling": st.booleans()}
-    if not engine.divides:
+    if not facts.divides:
         return found | {"reflections": st.integers(0, 4)}
     return found | {
         "fraction_bits": st.integers(0, 8),
@@ -57,7 +58,7 @@ ODD = {
 def options(draw: st.DrawFn, odd: bool = False) -> dict[str, Any]:
     """Generate options of a configuration, mostly compatible ones; if `odd`, sometimes with an invalid one."""
     engine = draw(st.sampled_from(list(ENGINES)))
-    chosen = draw(st.fixed_dictionaries({}, optional=ANY_OPTIONS | engine_options(ENGINES[engine])))
+    chosen = draw(st.fixed_dictionaries({}, optional=ANY_OPTIONS | engine_options(ENGINES[engine].facts)))
     chosen |= {"engine": engine, "allow_underrun": draw(st.booleans())}
     if odd and draw(st.integers(0, 3)) == 0:
         name = draw(st.sampled_from(list(ODD)))

@@ -13,7 +13,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
+from raycaster.design.decide import configure
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.sim.register_model import LiveScene, RegisterFile, Request
 from raycaster.sw.firmware import SOFTWARE, STRICT

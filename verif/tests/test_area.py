@@ -11,8 +11,8 @@ from dataclasses import replace
 import pytest
 from conftest import called
 
-from raycaster.configuration import configure
 from raycaster.convert.take_home import TOP
+from raycaster.design.decide import configure
 from raycaster.fpga import area, flows
 from raycaster.fpga.area import CHIPS
 from raycaster.fpga.cells import FAMILIES, Area, measure, measure_modules

@@ -19,16 +19,17 @@ import pytest
 from conftest import BUILD, ROOT, SMALL_SCENE, TINY, Bench, broken, random_values
 
 from raycaster.buses import BRIDGED, OWN
-from raycaster.configuration import ConfigurationError, configure
+from raycaster.configuration import ConfigurationError
 from raycaster.convert.write import write_scene_system, write_system
-from raycaster.engines import ENGINES, EXACT
+from raycaster.design.decide import configure
+from raycaster.rtl.engines import ENGINES, EXACT
 from raycaster.scene import load_scene
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import SIMULATORS, SimulationError, build_model, convert, run_bench
 from raycaster.verif.expected import check_cycles
 from raycaster.verif.seeds import seed
 
-EVERYTHING = dict.fromkeys(EXACT.looks, True)
+EVERYTHING = dict.fromkeys(EXACT.facts.looks, True)
 FULL_SCENE = ROOT / "raycaster" / "scenes" / "mirror_room.toml"
 DESIGNS = {
     **{engine: ("verilator", configure(engine=engine, screen="tiny"), FULL_SCENE) for engine in ENGINES},

@@ -17,8 +17,8 @@ from conftest import ROOT, SMALL_SCENE, plant
 from engine_vectors import small_config
 from small_program import write_program
 
-from raycaster.configuration import configure
-from raycaster.design import Design, ProcessorDesign, design_for
+from raycaster.design.decide import configure
+from raycaster.design.for_scene import Design, ProcessorDesign, design_for
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix
 from raycaster.fpga import bitstream, quartus

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import BUILD, SMALL_SCENE, Bench
 
-from raycaster.configuration import configure
+from raycaster.design.decide import configure
 from raycaster.golden.picture import WRONG
 from raycaster.sim.monitor import PULSE, Line, VideoError, decode_frame
 from raycaster.sim.simulator import SimulationError, convert

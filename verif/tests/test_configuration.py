@@ -15,9 +15,10 @@ import pytest
 from generated import ODD, examples, options
 from hypothesis import given
 
-from raycaster.configuration import MOST_REFLECTIONS, OPTIONS, Configuration, ConfigurationError, configure
-from raycaster.engines import ENGINES
-from raycaster.options import CommandParser, add_configuration_options, as_options, command_line, given_options
+from raycaster.configuration import MOST_REFLECTIONS, Configuration, ConfigurationError
+from raycaster.design.decide import OPTIONS, configure
+from raycaster.design.options import CommandParser, add_configuration_options, as_options, command_line, given_options
+from raycaster.rtl.engines import ENGINES, engine_of
 from raycaster.screens import BEAM_SCREENS
 
 LOOKS = {"turn": True, "materials": True, "patterns": True}
@@ -58,7 +59,7 @@ def test_options_make_a_consistent_design_or_a_one_line_error():
         assert config.quotient_bits == 9 + config.fraction_bits
         # A row needs its last cycle for the hand-over; the beam engine keeps pace with the pixels.
         if config.engine != "beam" and not config.allow_underrun:
-            assert config.groups * config.group_cycles < screen.row_cycles
+            assert config.groups * engine_of(config).group_cycles(config) < screen.row_cycles
         assert config.divider_bits in ((1, 2, 3) if config.engine == "seed" else (0,))
 
     check()
@@ -114,8 +115,8 @@ def test_names_are_unique(chosen, other):
 )
 def test_as_few_units_as_meet_the_row_budget(options, units, cycles):
     config = configure(engine="exact", **options)
-    assert (config.units, config.group_cycles) == (units, cycles)
-    assert config.groups * config.group_cycles < config.screen_geometry.row_cycles
+    assert (config.units, engine_of(config).group_cycles(config)) == (units, cycles)
+    assert config.groups * engine_of(config).group_cycles(config) < config.screen_geometry.row_cycles
 
 
 # The beam engine -----------------------------------------------------------------------------------------------------
@@ -139,7 +140,11 @@ def test_a_beam_is_as_fine_as_its_monitor(options, shown):
     config = configure(engine="beam", **options)
     screen = config.screen_geometry
     assert (screen.columns, screen.rows, screen.scale, screen.doubling, screen.clock_hz) == shown
-    assert (config.scale, config.units, config.group_cycles) == (screen.scale, options.get("pixels", 1), 1)
+    assert (config.scale, config.units, engine_of(config).group_cycles(config)) == (
+        screen.scale,
+        options.get("pixels", 1),
+        1,
+    )
 
 
 @pytest.mark.parametrize(("pixels", "rate"), [(1, 30), (2, 60)])

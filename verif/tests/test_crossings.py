@@ -14,8 +14,8 @@ import pytest
 from conftest import SMALL_SCENE
 from small_program import write_program
 
-from raycaster.configuration import configure
-from raycaster.design import Design, ProcessorDesign
+from raycaster.design.decide import configure
+from raycaster.design.for_scene import Design, ProcessorDesign
 from raycaster.fit.fixing import fix
 from raycaster.fpga.bitstream import write_project
 from raycaster.fpga.board import TOP, OpenBoard, QuartusBoard, board_names, find_board

@@ -12,10 +12,11 @@ from conftest import ROOT
 from systemrdl.node import RegNode
 from tcl import compare_calls, tcl_calls
 
-from raycaster.configuration import MOST_RECTANGLES, Configuration, configure
+from raycaster.configuration import MOST_RECTANGLES, Configuration
 from raycaster.convert.platform_designer import COMPONENT, INTERFACES, NIOS_SYSTEM
+from raycaster.convert.register_views import HEADER, SOFTWARE, write_header
 from raycaster.convert.write import write_verilog
-from raycaster.register_views import HEADER, SOFTWARE, write_header
+from raycaster.design.decide import configure
 from raycaster.registers import address_bits, compile_registers
 
 

@@ -17,11 +17,11 @@ from conftest import BUILD, ROOT, called, make
 
 from raycaster import outcomes
 from raycaster.convert import digest
+from raycaster.design.options import CommandParser
 from raycaster.digests import uncommented
 from raycaster.docs import blocks, drawings, facts, pages, proofs, tables, timing
 from raycaster.docs.hdl import parts
 from raycaster.docs.results import main as results
-from raycaster.options import CommandParser
 from raycaster.rtl import engine
 
 EVERY_PAGE = "".join(page.read_text() for page in pages.PAGES)

@@ -28,19 +28,20 @@ from host_software import (
 from hypothesis import given, reject
 from tcl import tcl_calls
 
-from raycaster.configuration import ConfigurationError, configure
+from raycaster.configuration import ConfigurationError
 from raycaster.convert.take_home import TOP
-from raycaster.engines import ENGINES, EXACT
+from raycaster.design.decide import configure
 from raycaster.golden.engines import model_of
 from raycaster.golden.world import Rectangles
 from raycaster.registers import register_map
+from raycaster.rtl.engines import ENGINES, EXACT
 from raycaster.scene import PATTERNS, UNTURNED, Camera, load_scene
 from raycaster.sw.firmware import SOFTWARE, STRICT
 from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.seeds import seed
 
 MAP = register_map(CONFIG.rectangles)
-EVERYTHING = configure(engine="exact", screen="tiny", **dict.fromkeys(EXACT.looks, True))
+EVERYTHING = configure(engine="exact", screen="tiny", **dict.fromkeys(EXACT.facts.looks, True))
 """Design with all features that scenes may need."""
 
 LARGE = configure(engine="beam", screen="tiny", rectangles=32)
@@ -78,7 +79,7 @@ def test_probe_reads_the_configuration(library, chosen):
 
 def test_the_header_names_every_engine_and_pattern():
     engines, patterns = enumeration("raycaster_engine"), enumeration("raycaster_pattern")
-    assert {one.name: one.value for one in engines} == {name.upper(): one.code for name, one in ENGINES.items()}
+    assert {one.name: one.value for one in engines} == {name.upper(): one.facts.code for name, one in ENGINES.items()}
     assert [*patterns.__members__] == [name.upper() for name in PATTERNS]
 
 

@@ -26,7 +26,7 @@ from host_software import (
     members,
 )
 
-from raycaster.configuration import configure
+from raycaster.design.decide import configure
 from raycaster.golden.rays import primary_slopes
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.registers import register_map

@@ -13,8 +13,8 @@ from hdl_blocks import converted
 from myhdl import always, always_comb, block
 
 from raycaster import rtl
-from raycaster.configuration import configure
 from raycaster.convert.vocabulary import VOCABULARY
+from raycaster.design.decide import configure
 from raycaster.hdl.signals import bit
 from raycaster.rtl.common.interfaces import Place
 from raycaster.rtl.common.records import Signs

@@ -23,10 +23,11 @@ from litex.soc.integration.soc_core import SoCCore
 from migen import ClockDomain
 from migen.genlib.io import CRG
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 from raycaster.convert import litex as litex_module
 from raycaster.convert.litex import add_ray_caster
 from raycaster.convert.take_home import TOP
+from raycaster.design.decide import configure
 from raycaster.errors import UserError
 from raycaster.fpga.board import Board, OpenBoard, find_board
 from raycaster.golden.exact import ExactModel

@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 from conftest import ROOT, compare_kept, plant, refusal
 
-from raycaster.options import FROM_MAKE
+from raycaster.design.options import FROM_MAKE
 from raycaster.sim.simulator import MODELS_VARIABLE
 from raycaster.verif.seeds import VARIABLE
 

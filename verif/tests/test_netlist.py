@@ -17,7 +17,7 @@ import pytest
 from conftest import BUILD, ROOT, SMALL_SCENE, TINY, called, plant, random_values, refusal
 from engine_vectors import check_ray_unit
 
-from raycaster.configuration import configure
+from raycaster.design.decide import configure
 from raycaster.fpga import multipliers
 from raycaster.fpga.flows import FLOWS
 from raycaster.fpga.multipliers import connect_register, register_products

@@ -16,8 +16,7 @@ import pytest
 from conftest import ROOT
 from definition import compare, exact_hit, follow, quotient, seed_hit
 
-from raycaster.configuration import configure
-from raycaster.engines import BEAM
+from raycaster.design.decide import configure
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import WRONG, count_wrong, diff_picture, first_wrong, shown, wrong_pixels
@@ -33,6 +32,7 @@ from raycaster.golden.random_world import (
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import SeedModel, divide
 from raycaster.golden.world import Rectangles
+from raycaster.rtl.engines import BEAM
 from raycaster.scene import Camera, Scene, load_scene, packaged_scenes
 from raycaster.screens import BEAM_SCREENS, SCREENS
 from raycaster.verif.seeds import seed

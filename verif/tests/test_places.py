@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 from conftest import ROOT, called, make
 
+from raycaster.design.options import FROM_MAKE
 from raycaster.errors import UserError
-from raycaster.options import FROM_MAKE
 from raycaster.places import clone_complaint, links_complaint
 from raycaster.sim import simulator
 from raycaster.sim.simulator import MODELS_VARIABLE

@@ -18,13 +18,13 @@ from conftest import ROOT, faulty, installed, make, refused, write_script
 from raycaster.cli import __main__ as program
 from raycaster.cli import completion
 from raycaster.cli.commands import COMMANDS, Command, overview, verify_overview
-from raycaster.design import design_for
+from raycaster.design.for_scene import design_for
+from raycaster.design.options import FROM_MAKE, command_line, run_command
 from raycaster.errors import UserError
 from raycaster.golden.engines import model_of
 from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.hierarchy import convert_hierarchy
 from raycaster.hdl.signals import bit
-from raycaster.options import FROM_MAKE, command_line, run_command
 from raycaster.rtl.common.records import Colour
 
 SCREEN_LINES, MOST_LINES, COLUMNS = 24, 40, 80

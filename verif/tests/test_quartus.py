@@ -12,8 +12,8 @@ import pytest
 from conftest import SMALL_SCENE, run_tool
 from tcl import compare_calls, tcl_calls
 
-from raycaster.configuration import configure
 from raycaster.convert.take_home import waivers
+from raycaster.design.decide import configure
 from raycaster.fpga import quartus
 from raycaster.fpga.board import TOP, QuartusBoard, board_names, find_board
 from raycaster.fpga.quartus import write_project

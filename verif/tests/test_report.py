@@ -15,7 +15,7 @@ import pytest
 from conftest import ROOT
 from rich.console import Console
 
-from raycaster.configuration import configure
+from raycaster.design.decide import configure
 from raycaster.fpga.cells import Area
 from raycaster.golden.catalogue import catalogue
 from raycaster.report import __main__ as report

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from raycaster.configuration import configure
+from raycaster.design.decide import configure
 from raycaster.scene import load_scene, packaged_scenes
 
 GOOD = """\

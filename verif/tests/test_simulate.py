@@ -13,10 +13,10 @@ import pytest
 from conftest import FLOOR_SCENE, PATTERNED_SCENE, ROOT, SMALL_SCENE, TURNED_SCENE, called
 from PIL import Image
 
-from raycaster.configuration import OPTIONS as DESIGN_OPTIONS
-from raycaster.configuration import configure
-from raycaster.design import design_for, left_out, packaged_for
-from raycaster.engines.engine import LOOKS
+from raycaster.configuration import LOOKS
+from raycaster.design.decide import OPTIONS as DESIGN_OPTIONS
+from raycaster.design.decide import configure
+from raycaster.design.for_scene import design_for, left_out, packaged_for
 from raycaster.output import Console, emptied, replaced
 from raycaster.scene import packaged_scenes
 from raycaster.sim import scenes as simulate

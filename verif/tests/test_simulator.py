@@ -15,7 +15,7 @@ import pytest
 from conftest import write_script
 
 import raycaster.rtl
-from raycaster.configuration import configure
+from raycaster.design.decide import configure
 from raycaster.errors import UserError
 from raycaster.sim import ensure_tools, simulator
 from raycaster.sim.ensure_tools import ensure, find

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from conftest import BUILD, ROOT, broken, called
 
-from raycaster.configuration import configure
+from raycaster.design.decide import configure
 from raycaster.golden.catalogue import catalogue
 from raycaster.scene import dump_scene, load_scene
 from raycaster.sim.simulator import SimulationError, convert

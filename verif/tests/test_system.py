@@ -11,7 +11,7 @@ from conftest import BUILD, ROOT, SMALL_SCENE, broken
 from PIL import Image
 from small_program import write_program
 
-from raycaster.configuration import configure
+from raycaster.design.decide import configure
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, MEMORY_WORDS
 from raycaster.play import game

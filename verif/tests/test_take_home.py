@@ -15,16 +15,17 @@ from conftest import SMALL_SCENE, plant, run_tool
 from tcl import tcl_calls
 
 from raycaster.buses import BRIDGED, BUSES, OWN
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM
+from raycaster.convert.register_views import HEADER
 from raycaster.convert.take_home import FILE_LIST, PREFIX, TOP, WAIVERS, waivers
 from raycaster.convert.write import write_verilog
-from raycaster.engines import ENGINES, EXACT
+from raycaster.design.decide import configure
 from raycaster.fit.fixing import fix
 from raycaster.fpga import verilog
 from raycaster.hdl.hierarchy import prefixed
-from raycaster.register_views import HEADER
 from raycaster.registers import address_bits
+from raycaster.rtl.engines import ENGINES, EXACT
 from raycaster.tools import run_yosys
 
 CONFIGURATIONS = [
@@ -40,7 +41,7 @@ CONFIGURATIONS = [
     configure(units=2, rectangles=3, reflections=2, materials=True, patterns=True, allow_underrun=True),
     configure(engine="exact", screen="tiny", reflections=2, turn=True, materials=True, patterns=True),
     configure(engine="exact", screen="tiny", rectangles=2, light=True),
-    configure(engine="exact", screen="tiny", reflections=2, rectangles=2, **dict.fromkeys(EXACT.looks, True)),
+    configure(engine="exact", screen="tiny", reflections=2, rectangles=2, **dict.fromkeys(EXACT.facts.looks, True)),
     configure(engine="beam", rows=180),
     configure(engine="beam", screen="tiny", reflections=2, rectangles=3, scale=1),
     configure(engine="beam", reflections=0, rectangles=1, colour_bits=4),

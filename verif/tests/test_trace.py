@@ -20,7 +20,7 @@ from raycaster.debug.recorder import record
 from raycaster.debug.trace import difference_line, main, show
 from raycaster.debug.wave import write_view
 from raycaster.debug.waves import Waves
-from raycaster.design import Design, design_for
+from raycaster.design.for_scene import Design, design_for
 from raycaster.rtl.engine.ray_sequencer import RayState
 from raycaster.sim.monitor import CLOCK_NS
 from raycaster.sim.simulator import WINDOW_BENCH, build_model, convert

@@ -14,12 +14,12 @@ import pytest
 from conftest import BUILD, PAGE_MODELS, page_state
 from rich.console import Console
 
-from raycaster.configuration import configure
-from raycaster.engines import SEED
+from raycaster.design.decide import configure
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import Rectangles
 from raycaster.play.machine import Machine, build_machine
+from raycaster.rtl.engines import SEED
 from raycaster.scene import Camera, Scene, SceneError, load_scene, packaged_scenes
 from raycaster.screens import SCREENS, Screen
 from raycaster.sw.firmware import build_firmware
@@ -196,7 +196,7 @@ def test_the_engines_side_by_side(page, request, which, screen, fraction_bits):
     """The exact engine draws the shadows, and afterwards a scene without a light; the seed engine refuses the first."""
     page.goto((request.getfixturevalue(which) / "index.html").as_uri() + "#engines")
     page_state(page, "engines")
-    reason = SEED.lacks["light"].replace("the seed engine", "it")
+    reason = SEED.facts.lacks["light"].replace("the seed engine", "it")
     state = engines(page, "evening", fraction_bits)
     # The exact engine of the whole page has the screen of the walk.
     assert state["exact"] == {"hash": golden_hash(packaged("evening"), screen=screen), "wrong": 0}

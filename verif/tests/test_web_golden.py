@@ -12,14 +12,15 @@ import pytest
 from conftest import BUILD
 from wasmtime import Instance, Module, Store
 
-from raycaster.configuration import LOOKS, Configuration, configure
-from raycaster.engines import BEAM, EXACT
+from raycaster.configuration import LOOKS, Configuration
+from raycaster.design.decide import configure
 from raycaster.errors import UserError
 from raycaster.golden.catalogue import catalogue
 from raycaster.golden.engines import model_of
 from raycaster.golden.picture import shown
 from raycaster.program import scene_words
 from raycaster.registers import register_map
+from raycaster.rtl.engines import BEAM, EXACT
 from raycaster.scene import load_scene, packaged_scenes
 from raycaster.screens import SCREENS, Screen
 from raycaster.sim.register_model import COMMIT_CLOCKS, LiveScene, SceneFollower
@@ -33,10 +34,7 @@ WORDS = 1024
 
 QUOTIENTS = [(bits, rounding) for bits in (0, 3, 8) for rounding in ("truncate", "nearest")]
 ENGINES = [
-    *(
-        {"engine": engine.name, **{look: True for look in LOOKS if look not in engine.lacks}}
-        for engine in (EXACT, BEAM)
-    ),
+    *({"engine": engine.facts.name, **dict.fromkeys(engine.facts.looks, True)} for engine in (EXACT, BEAM)),
     *(
         {"engine": "seed", "fraction_bits": bits, "rounding": rounding, "materials": True, "patterns": True}
         for bits, rounding in QUOTIENTS

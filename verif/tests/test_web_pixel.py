@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from conftest import PAGE_MODELS, page_state
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 from raycaster.debug.probes.exact import lighting
 from raycaster.debug.probes.ray import Place, Ray
-from raycaster.design import Design
-from raycaster.engines import SEED
+from raycaster.design.decide import configure
+from raycaster.design.for_scene import Design
+from raycaster.rtl.engines import SEED
 from raycaster.scene import load_scene, packaged_scenes
 from raycaster.verif.seeds import seed
 from raycaster.web.taps import tapped_probes
@@ -186,7 +187,7 @@ def test_the_tab_refuses_bad_choices(page, site):
     refusal = page.locator("#pixel-refusal")
     for scene, look in (("kaleidoscope", "turn"), ("evening", "light")):
         ask(page, scene=scene)
-        reason = SEED.lacks[look].replace("the seed engine", "it")
+        reason = SEED.facts.lacks[look].replace("the seed engine", "it")
         assert refusal.text_content() == f"The seed engine refuses this scene: {reason}."
         assert page.locator("#pixel-engine").input_value() == "exact"
         assert page.locator("#pixel-engine option[value=seed]").is_disabled()

@@ -13,7 +13,7 @@ import pytest
 from conftest import BUILD, ROOT
 from PIL import Image
 
-from raycaster.configuration import configure
+from raycaster.design.decide import configure
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.play import game, window

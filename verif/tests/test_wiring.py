@@ -13,8 +13,9 @@ from typing import Any, NamedTuple
 import pytest
 from conftest import plant, run_tool
 
-from raycaster.configuration import Configuration, configure
-from raycaster.design import ProcessorDesign
+from raycaster.configuration import Configuration
+from raycaster.design.decide import configure
+from raycaster.design.for_scene import ProcessorDesign
 from raycaster.fpga import bitstream, quartus
 from raycaster.fpga import board as board_module
 from raycaster.fpga.board import HERE, TOP, Board, OpenBoard, QuartusBoard, board_names, find_board

@@ -14,11 +14,11 @@ from unittest.mock import Mock
 import pytest
 
 from raycaster import rtl
-from raycaster.configuration import configure
 from raycaster.convert import write
 from raycaster.convert.digest import verilog_digest
 from raycaster.convert.take_home import FILE_LIST
 from raycaster.convert.write import write_verilog
+from raycaster.design.decide import configure
 from raycaster.hdl.errors import UserError
 from raycaster.output import emptied
 

@@ -15,7 +15,7 @@ from raycaster.debug.probes.exact import fraction
 from raycaster.debug.probes.ray import Description, Event, Place, Probe, Ray, Read, Value, channels_of
 from raycaster.debug.probes.units import indexed, monitor_probes, rect_probe, scene_probes, shown_events
 from raycaster.debug.waves import Samples, signed
-from raycaster.engines import beam
+from raycaster.rtl.beam import latencies as beam
 from raycaster.rtl.common import records
 from raycaster.rtl.common.widths import factor_bits, index_bits
 

@@ -6,12 +6,12 @@ from raycaster.debug.probes.beam import BeamProbes
 from raycaster.debug.probes.exact import ExactProbes
 from raycaster.debug.probes.ray import Description
 from raycaster.debug.probes.seed import SeedProbes
-from raycaster.engines import BEAM, EXACT, SEED
+from raycaster.rtl.engines import BEAM, EXACT, SEED, engine_of
 
-DESCRIPTIONS = {SEED.name: SeedProbes, EXACT.name: ExactProbes, BEAM.name: BeamProbes}
+DESCRIPTIONS = {SEED: SeedProbes, EXACT: ExactProbes, BEAM: BeamProbes}
 """Descriptions by engine."""
 
 
 def description_of(config: Configuration, unit: int) -> Description:
     """Return the engine's description for the pixels of a ray unit."""
-    return DESCRIPTIONS[config.engine](config, unit)
+    return DESCRIPTIONS[engine_of(config)](config, unit)

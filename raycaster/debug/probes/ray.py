@@ -19,7 +19,7 @@ import numpy as np
 from raycaster.configuration import CHANNEL_BITS
 from raycaster.debug.probes import COLOURS, DUT, PINS, module_of
 from raycaster.debug.waves import Samples, Waves, signed
-from raycaster.design import Design
+from raycaster.design.for_scene import Design
 from raycaster.errors import UserError
 from raycaster.golden.colour import hit_colours
 from raycaster.golden.engines import model_of

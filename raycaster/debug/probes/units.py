@@ -10,9 +10,9 @@ from raycaster.configuration import Configuration
 from raycaster.debug.probes import AXES, COLOURS, DUT, PINS, fields, numbered
 from raycaster.debug.probes.ray import Description, Event, Place, Probe, Ray, Read, Value
 from raycaster.debug.waves import Samples, signed
-from raycaster.engines.exact import AIM_CYCLES
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed
+from raycaster.rtl.common.interfaces import AIM_CYCLES
 from raycaster.rtl.common.records import Pixel, Signs, camera_of, rect_of
 
 RENDERER = f"{DUT}.ray_caster_renderer_i"

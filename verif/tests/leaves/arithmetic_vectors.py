@@ -7,7 +7,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
+from raycaster.design.decide import configure
 
 VECTORS = 300
 

@@ -12,12 +12,13 @@ import numpy as np
 from hard_scenes import sharpened, verdict
 from vectors import AXES, LAST, Bench, any_place, by_axis, colour_word, designs, named
 
-from raycaster.configuration import WORLD_SIZE, Configuration, configure
-from raycaster.engines.beam import TESTER_LATENCY, fold_lead, is_staged, slope_at
+from raycaster.configuration import WORLD_SIZE, Configuration
+from raycaster.design.decide import configure
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.random_world import random_basis, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.rtl.beam.latencies import TESTER_LATENCY, fold_lead, is_staged, slope_at
 from raycaster.rtl.common.records import candidate_of, facet_of, stride_of, walk_of
 from raycaster.rtl.common.widths import steepest_slope, walk_bits
 

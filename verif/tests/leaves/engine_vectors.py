@@ -20,7 +20,8 @@ from hard_scenes import (
 )
 from vectors import AXES, Bench, basis_inputs, by_axis, colour_word
 
-from raycaster.configuration import WORLD_SIZE, Configuration, configure
+from raycaster.configuration import WORLD_SIZE, Configuration
+from raycaster.design.decide import configure
 from raycaster.golden.random_world import random_basis
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles

@@ -8,7 +8,8 @@ import dataclasses
 import numpy as np
 from vectors import any_config
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
+from raycaster.design.decide import configure
 from raycaster.fixed import FixedRectangle, FixedScene
 from raycaster.golden.random_world import random_looks, random_rectangles
 from raycaster.golden.world import Rectangles

@@ -12,12 +12,14 @@ from typing import Any, ClassVar
 import numpy as np
 import pytest
 
-from raycaster.configuration import WORLD_SIZE, Configuration, configure
+from raycaster.configuration import WORLD_SIZE, Configuration
+from raycaster.design.decide import configure
 from raycaster.golden.random_world import EXTREMES
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.signals import Signed, bit, reset_signal, signed, tied, unsigned
 from raycaster.registers import address_bits
 from raycaster.rtl.common import interfaces, records, widths
+from raycaster.rtl.engines import engine_of
 from raycaster.verif.seeds import repeat
 
 PORTS: dict[str, int | Callable[[Any], Any]] = {
@@ -90,6 +92,8 @@ class Bench(Leaf):
             parameter = parameters[name]
             if name == "config":
                 return config
+            if name in ("control", "unit"):
+                return getattr(engine_of(config), name)
             if parameter.annotation is not parameter.empty or parameter.default is not parameter.empty:
                 return given[name]
             made = given.get(name, PORTS.get(name, lambda _: bit()))

@@ -7,14 +7,15 @@ from engine_vectors import scene_inputs, usable_of
 from hard_scenes import pixel_ports, traced_scene
 from vectors import basis_inputs, config_id
 
-from raycaster.engines.beam import AIM_LATENCY, SETUP_LATENCY, beam_latency, start_cycles
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.random_world import random_basis, random_looks
 from raycaster.golden.rays import primary_slopes
 from raycaster.hdl.signals import Signed
 from raycaster.rtl.beam.beam_caster import beam_caster
+from raycaster.rtl.beam.latencies import AIM_LATENCY, beam_latency, start_cycles
 from raycaster.rtl.common.records import shown_of
 from raycaster.rtl.common.widths import factor_bits
+from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
 from raycaster.scene import UNTURNED
 from raycaster.verif.expected import sorted_rect
 

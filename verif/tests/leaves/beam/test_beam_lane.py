@@ -6,11 +6,11 @@ from beam_vectors import any_view, beam_config, race, row_ports, row_ports_of
 from hard_scenes import pixel_ports
 from vectors import colour_word, config_id
 
-from raycaster.engines.beam import beam_latency
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.rays import primary_slopes
 from raycaster.hdl.signals import tied
 from raycaster.rtl.beam.beam_lane import beam_lane
+from raycaster.rtl.beam.latencies import beam_latency
 
 
 @pytest.mark.slow_sets("beam-tiny48-s1", "beam-tiny48-s2-u2-r3-m2-c8-1")

@@ -7,9 +7,9 @@ from beam_vectors import any_view, beam_config, folded, met_last, race, row_port
 from hard_scenes import verdict
 from vectors import by, named
 
-from raycaster.engines.beam import winner_latency
 from raycaster.golden.exact import ExactModel
 from raycaster.rtl.beam.beam_pass import beam_pass
+from raycaster.rtl.beam.latencies import winner_latency
 
 
 @pytest.mark.slow_sets("0", "1")

@@ -7,8 +7,8 @@ from beam_vectors import beam_config
 from hard_scenes import pixel_ports
 from vectors import designs
 
-from raycaster.engines.beam import blend_latency, mixes
 from raycaster.rtl.beam.colour_blend import colour_blend
+from raycaster.rtl.beam.latencies import blend_latency, mixes
 from raycaster.rtl.common.records import seen_of
 from raycaster.rtl.common.widths import RGB_BITS
 

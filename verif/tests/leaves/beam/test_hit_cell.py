@@ -7,9 +7,9 @@ import numpy as np
 from beam_vectors import beam_config
 from vectors import LAST, any_place, designs
 
-from raycaster.engines.beam import CELL_LATENCY
 from raycaster.hdl.signals import Signed
 from raycaster.rtl.beam.hit_cell import hit_cell
+from raycaster.rtl.beam.latencies import CELL_LATENCY
 from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, shift_bits, steepest_slope
 
 

@@ -9,9 +9,9 @@ from beam_vectors import beam_config, beam_rays, image_of, seen_from
 from vectors import LAST, any_place, by_axis, designs, named
 
 from raycaster.configuration import WORLD_SIZE, Configuration
-from raycaster.engines.beam import CELL_LATENCY, CELL_SLOPE_AT
 from raycaster.golden.world import OTHER_AXES
 from raycaster.rtl.beam.hit_cells import hit_cells
+from raycaster.rtl.beam.latencies import CELL_LATENCY, CELL_SLOPE_AT
 from raycaster.rtl.common.interfaces import Direction
 from raycaster.rtl.common.records import Point, Sight
 from raycaster.rtl.common.widths import exact_slope_bits, index_bits, steepest_slope

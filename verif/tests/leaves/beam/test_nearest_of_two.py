@@ -3,7 +3,7 @@
 
 from beam_vectors import any_candidate, by_screen, candidate_ports, close_candidates, first_of, fraction_of
 
-from raycaster.engines.beam import contest_latency
+from raycaster.rtl.beam.latencies import contest_latency
 from raycaster.rtl.beam.nearest_of_two import nearest_of_two
 from raycaster.rtl.common.records import candidate_of
 

@@ -4,7 +4,7 @@
 from beam_vectors import beam_config, beam_rays, folded, image_of, met_last
 from vectors import by_axis, designs, named
 
-from raycaster.engines.beam import FOLD_LATENCY
+from raycaster.rtl.beam.latencies import FOLD_LATENCY
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.common.interfaces import Direction
 from raycaster.rtl.common.records import Reflector, room_image_of

@@ -9,11 +9,13 @@ from cull_vectors import culling_designs, hit_mask, scenes, with_edges_on_rays
 from fates import margin_of, may_hit_mask
 from vectors import by_axis
 
-from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
-from raycaster.engines.engine import SETUP_LATENCY
+from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError
+from raycaster.design.decide import configure
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.cull.group_culler import group_culler
+from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
+from raycaster.rtl.engines import engine_of
 from raycaster.verif.expected import sorted_rect
 
 
@@ -32,7 +34,8 @@ def test_which_designs_cull(options, culls, name):
     assert config.culling is culls
     assert config.name == name
     # The worst case is the same with and without culling.
-    assert config.group_cycles == configure(**{**options, "culling": None}).group_cycles
+    cycles = engine_of(config).group_cycles
+    assert cycles(config) == cycles(configure(**{**options, "culling": None}))
 
 
 def test_the_beam_engine_does_not_cull():

@@ -6,8 +6,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from raycaster.configuration import WORLD_SIZE, configure
-from raycaster.engines.exact import AIM_CYCLES
+from raycaster.configuration import WORLD_SIZE
+from raycaster.design.decide import configure
+from raycaster.rtl.common.interfaces import AIM_CYCLES
 from raycaster.rtl.common.widths import exact_slope_bits, light_slope_bits
 from raycaster.rtl.exact.shadow_register import shadow_register
 

@@ -6,7 +6,7 @@ from collections import deque
 from conftest import SMALL_SCENE
 from vectors import by, named, stepped
 
-from raycaster.configuration import configure
+from raycaster.design.decide import configure
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.common.interfaces import AvalonPort

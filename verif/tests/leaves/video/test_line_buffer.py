@@ -6,7 +6,7 @@ from itertools import product
 import pytest
 from vectors import by
 
-from raycaster.configuration import configure
+from raycaster.design.decide import configure
 from raycaster.hdl.signals import bits_for
 from raycaster.rtl.common.widths import offset_bits, pixel_bits
 from raycaster.rtl.video.line_buffer import line_buffer

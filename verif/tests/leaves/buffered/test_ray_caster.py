@@ -13,11 +13,11 @@ from hard_scenes import pixel_word, traced_scene, tracer
 from vectors import any_config, basis_inputs, check_fetches, designs
 
 from raycaster.configuration import Configuration
-from raycaster.engines.engine import SETUP_LATENCY
 from raycaster.golden.random_world import random_basis
 from raycaster.golden.rays import primary_slopes
+from raycaster.rtl.buffered.ray_caster import ray_caster
 from raycaster.rtl.common.widths import pixel_bits
-from raycaster.rtl.system.ray_caster import ray_caster
+from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
 from raycaster.scene import UNTURNED
 from raycaster.verif.expected import TraceCycle, rect_cycles, sorted_rect, trace_cycles
 

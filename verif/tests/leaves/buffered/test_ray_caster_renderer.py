@@ -20,8 +20,9 @@ from vectors import designs
 from raycaster.golden.engines import model_of
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
-from raycaster.rtl.system.ray_caster_module import RENDERERS
-from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
+from raycaster.rtl.beam.beam_renderer import beam_renderer
+from raycaster.rtl.buffered.ray_caster_renderer import ray_caster_renderer
+from raycaster.rtl.engines import engine_of
 from raycaster.screens import Screen, Span
 from raycaster.verif.expected import sorted_rect, trace_cycles
 
@@ -69,7 +70,7 @@ def test_ray_caster_renderer(config, leaf_of, random):
     assert len(set(golden.flat)) > 1, "the rectangle must have an edge in view"
     empty = np.full_like(golden, pixel_word(config, background))
     group = len(trace_cycles(config, [0], config.reflections)) + 3
-    assert group == config.group_cycles
+    assert group == engine_of(config).group_cycles(config)
     groups_in_time = min(config.groups, (screen.row_cycles - 1) // group)
     shown = golden.copy()
     # Columns that were not written in time keep their half's old content, from the empty scene.
@@ -113,7 +114,7 @@ LONG_LINE = replace(TINY_SCREEN, horizontal=Span(16, 8, 24, 60, active_high=Fals
 def test_ray_caster_renderer_scenes(config, leaf_of, random):
     """One scene per frame, with one rectangle anywhere, and once disabled; both renderers."""
     screen = config.screen_geometry
-    leaf = leaf_of(RENDERERS.get(config.engine, ray_caster_renderer), config)
+    leaf = leaf_of(ray_caster_renderer if config.facts.line_buffered else beam_renderer, config)
     count = leaf.some(50 if config.engine == "beam" else 30)
     scenes = [scene_in_view(random, config, number % 3) for number in range(count)]
     camera, table, background, reflections, words = next(scene for scene in scenes if len(np.unique(scene[-1])) > 1)

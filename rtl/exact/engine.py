@@ -4,30 +4,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from raycaster.engines.engine import LineBufferedEngine
-
-if TYPE_CHECKING:
-    from raycaster.configuration import Configuration, Options
-
-WRITE_AT = 2
-"""Bit of in_flight that is set three cycles after find_intersection, the latency of a unit's test."""
-
-PATTERN_LATENCY = 6
-"""Cycles until the cells of a pattern are known: three each for u and v, with two bits per cycle."""
-
-
-AIM_CYCLES = 4
-"""Cycles from the end of a pass to the start of the shadow pass: the shadow ray, a component per cycle."""
+from raycaster.configuration import Configuration, Facts, Options
+from raycaster.rtl.buffered.engine import LineBufferedEngine
+from raycaster.rtl.common.interfaces import AIM_CYCLES
+from raycaster.rtl.exact.exact_control import PATTERN_LATENCY, WRITE_AT, exact_control
+from raycaster.rtl.exact.exact_unit import exact_unit
+from raycaster.screens import SCREENS
 
 
 class Exact(LineBufferedEngine):
     """Units that test one rectangle per clock."""
-
-    name, code = "exact", 1
-    colour, marker = "#0072B2", "s"
-    usual_build = "5 s"
 
     def sized(self, config: Configuration, options: Options) -> Configuration:
         """Take as few units as meet the row budget."""
@@ -55,3 +42,10 @@ class Exact(LineBufferedEngine):
         """Add a shadow pass to each pass."""
         shadows = sum(mask.bit_count() for mask in config.shadows)
         return super().group_cycles(config) + shadows + len(config.shadows) * (AIM_CYCLES + self.pass_latency(config))
+
+
+EXACT = Exact(
+    Facts(name="exact", code=1, colour="#0072B2", marker="s", usual_build="5 s", screens=SCREENS),
+    control=exact_control,
+    unit=exact_unit,
+)

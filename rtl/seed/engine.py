@@ -4,23 +4,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar
 
-from raycaster.engines.engine import LineBufferedEngine
-
-if TYPE_CHECKING:
-    from raycaster.configuration import Configuration, Options
+from raycaster.configuration import Configuration, Facts, Options
+from raycaster.rtl.buffered.engine import LineBufferedEngine
+from raycaster.rtl.seed.ray_control import LOAD_AT, WRITE_AFTER, ray_control
+from raycaster.rtl.seed.ray_unit import ray_unit
+from raycaster.screens import SCREENS
 
 UNIT_CELLS = {1: 559, 2: 607, 3: 647}
 """ECP5 LUT4s per unit, by quotient bits per cycle; from `make area DIVIDER_BITS=`."""
 
 DEFAULT_UNITS = 32
-
-LOAD_AT = 2
-"""Cycles from find_intersection to load_divider; store_quotient follows after the cycles of a division."""
-
-WRITE_AFTER = 2
-"""Cycles from store_quotient to write_z_buf."""
 
 
 class Seed(LineBufferedEngine):
@@ -28,15 +22,6 @@ class Seed(LineBufferedEngine):
 
     A rounded coordinate is off by less than one, and the depth is measured along x.
     """
-
-    name, code = "seed", 0
-    colour, marker = "#D55E00", "o"
-    usual_build = "8 s"
-    margin, divides = 1, True
-    lacks: ClassVar = {
-        "turn": "the seed engine measures depth along x, so its camera cannot turn",
-        "light": "the seed engine rounds the points from which shadows would be cast",
-    }
 
     def culls(self, options: Options) -> bool:
         """Return True, as culling shortens the long slots, except for a fixed scene, which leaves out more."""
@@ -70,3 +55,16 @@ class Seed(LineBufferedEngine):
     def pass_latency(self, config: Configuration) -> int:
         """Add the stages: slope and plane latched, product, divider loaded, hit point, depth compared, ray stored."""
         return LOAD_AT + WRITE_AFTER + 2
+
+
+SEED = Seed(
+    Facts(
+        name="seed", code=0, colour="#D55E00", marker="o", usual_build="8 s", screens=SCREENS, margin=1, divides=True,
+        lacks={
+            "turn": "the seed engine measures depth along x, so its camera cannot turn",
+            "light": "the seed engine rounds the points from which shadows would be cast",
+        },
+    ),
+    control=ray_control,
+    unit=ray_unit,
+)  # fmt: skip

@@ -1,32 +1,24 @@
 # SPDX-License-Identifier: MIT
 """The ray caster of an engine with a line buffer: one control, and units that it operates in lockstep."""
 
-from typing import Any
+from collections.abc import Callable
 
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.engines import EXACT, SEED
 from raycaster.hdl.signals import side_by_side, tied, unconnected
 from raycaster.rtl.common.interfaces import GroupFate, RayFate, Steps
 from raycaster.rtl.common.records import Pixel, rect_of, surface_of
 from raycaster.rtl.common.widths import unit_bits
 from raycaster.rtl.cull.group_culler import group_culler
 from raycaster.rtl.engine.ray_sequencer import ends_early
-from raycaster.rtl.exact.exact_control import exact_control
-from raycaster.rtl.exact.exact_unit import exact_unit
-from raycaster.rtl.seed.ray_control import ray_control
-from raycaster.rtl.seed.ray_unit import ray_unit
-
-CONTROLS = {SEED.name: ray_control, EXACT.name: exact_control}
-"""The block that operates all units, by engine."""
-
-UNITS: dict[str, Any] = {SEED.name: ray_unit, EXACT.name: exact_unit}
-"""The block of one unit, by engine."""
 
 
 @block
-def ray_caster(clk, reset_ray_caster, enable, place, camera, picture, rects, done, pixels, config: Configuration):
+def ray_caster(
+    clk, reset_ray_caster, enable, place, camera, picture, rects, done, pixels, config: Configuration,
+    control: Callable, unit: Callable,
+):  # fmt: skip
     """Compute the pixels of `config.units` neighbouring columns at once.
 
     It starts when enable is high and reset_ray_caster low. place and the scene must then be stable until done.
@@ -43,8 +35,9 @@ def ray_caster(clk, reset_ray_caster, enable, place, camera, picture, rects, don
         pixels: unsigned, a `Pixel` word of `pixel_bits` bits for each of the `config.units` units, unit 0 in the lowest
             bits; output, valid from done to reset_ray_caster.
         config: the design.
+        control: the engine's block that operates all units.
+        unit: the engine's block of one unit.
     """
-    control, unit = CONTROLS[config.engine], UNITS[config.engine]
     steps = Steps()
     offered = rect_of(config) if config.facts.divides else surface_of(config)
     unit_pixels = [Pixel(config.colour_bits) for _ in range(config.units)]

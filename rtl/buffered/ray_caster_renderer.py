@@ -1,21 +1,25 @@
 # SPDX-License-Identifier: MIT
 """The renderer with a line buffer, which renders each row just ahead of the monitor."""
 
+from collections.abc import Callable
+
 from myhdl import always, always_comb, always_seq, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, bits_for, derived_clock, unsigned
+from raycaster.rtl.buffered.ray_caster import ray_caster
 from raycaster.rtl.common.clock_gate import clock_gate
 from raycaster.rtl.common.interfaces import Place, Scan
 from raycaster.rtl.common.records import Pixel
 from raycaster.rtl.common.widths import CYCLE_BITS, pixel_bits, unit_bits
-from raycaster.rtl.system.ray_caster import ray_caster
 from raycaster.rtl.video.line_buffer import line_buffer
 from raycaster.rtl.video.video_generator import video_generator
 
 
 @block
-def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, config: Configuration):
+def ray_caster_renderer(
+    clk, reset, picture, camera, rects, progress, vga, config: Configuration, control: Callable, unit: Callable
+):
     """Render the live scene into the double line buffer, and show it.
 
     While a row is shown the next one is rendered, in `config.groups` groups of `config.units` columns. The live scene
@@ -32,6 +36,8 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
             and group_cycles saturate.
         vga: `Vga`; output.
         config: the design.
+        control: the engine's block that operates all units.
+        unit: the engine's block of one unit.
     """
     units, groups, rows = config.units, config.groups, config.screen_geometry.rows
     width = pixel_bits(config)
@@ -54,7 +60,7 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
     )  # fmt: skip
     caster = ray_caster(
         clk=caster_clk, reset_ray_caster=reset_ray_caster, enable=enable, place=place, camera=camera, picture=picture,
-        rects=rects, done=done, pixels=pixels, config=config,
+        rects=rects, done=done, pixels=pixels, config=config, control=control, unit=unit,
     )  # fmt: skip
     gate = clock_gate(clk, reset, awake=caster_awake, gated_clk=caster_clk)
     buffers = [

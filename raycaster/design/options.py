@@ -19,7 +19,8 @@ from typing import Any, NoReturn
 from pydantic.fields import FieldInfo
 
 from raycaster.complaints import FROM_MAKE, SHORT_NAMES, as_typed, did_you_mean, from_make
-from raycaster.configuration import OPTIONS, Configuration
+from raycaster.configuration import Configuration
+from raycaster.design.decide import OPTIONS
 from raycaster.errors import UserError
 from raycaster.hdl.errors import fault_in_block
 from raycaster.output import printable

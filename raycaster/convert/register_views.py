@@ -11,9 +11,9 @@ from peakrdl_cheader.c_standards import CStandard
 from peakrdl_cheader.exporter import CHeaderExporter
 from peakrdl_html import HTMLExporter
 
-from raycaster.configuration import configure
+from raycaster.design.decide import configure
+from raycaster.design.options import CommandParser
 from raycaster.memory_map import c_header
-from raycaster.options import CommandParser
 from raycaster.output import printable, replaced
 from raycaster.registers import compile_registers
 

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.complaints import as_typed
-from raycaster.configuration import Configuration, ConfigurationError, configure
-from raycaster.engines import ENGINES, EXACT, SEED
-from raycaster.engines.engine import LOOK_NAMES
+from raycaster.configuration import LOOK_NAMES, Configuration, ConfigurationError
+from raycaster.design.decide import configure
 from raycaster.errors import UserError
+from raycaster.rtl.engines import ENGINES
 from raycaster.scene import Scene, load_scene, packaged_scenes
 
 
@@ -57,7 +57,7 @@ def left_out(options: Mapping[str, Any]) -> dict[str, list[str]]:
     """Return the names of the packaged scenes that hardware with these options cannot show, by the reason."""
     lacking = {look: f"needs {what}" for look, what in LOOK_NAMES.items() if str(options.get(look)) in ("0", "False")}
     if engine := ENGINES.get(str(options.get("engine"))):
-        lacking |= {look: f"needs {LOOK_NAMES[look]}: {reason}" for look, reason in engine.lacks.items()}
+        lacking |= {look: f"needs {LOOK_NAMES[look]}: {reason}" for look, reason in engine.facts.lacks.items()}
     found = defaultdict(list)
     for name, path in packaged_scenes().items():
         needs = load_scene(path).needs
@@ -69,7 +69,7 @@ def left_out(options: Mapping[str, Any]) -> dict[str, list[str]]:
 def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> Design:
     """Read a scene and choose its hardware; rows, reflections and looks that are not given come from the scene.
 
-    If no engine is given and the default one cannot show the scene, the exact engine is chosen.
+    If no engine is given, the first one that can show the scene is chosen.
 
     Args:
         path: the scene file.
@@ -85,8 +85,8 @@ def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, An
         chosen["rows"] = scene.rows
     chosen.setdefault("reflections", scene.reflections)
     needed = scene.lacks(())
-    if scene.lacks(SEED.looks):
-        chosen.setdefault("engine", EXACT.name)
+    able = (name for name, engine in ENGINES.items() if not scene.lacks(engine.facts.looks))
+    chosen.setdefault("engine", next(able))
     try:
         configuration = configure(**dict.fromkeys(needed, True) | chosen)
     except ConfigurationError as error:

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""Decide a design: from the options that a user chooses to a configuration with nothing left open."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import ConfigDict, Field, ValidationError
+from pydantic.dataclasses import dataclass as validated_dataclass
+from pydantic.fields import FieldInfo
+
+from raycaster.complaints import as_typed, refusal
+from raycaster.configuration import LOOK_NAMES, Configuration, ConfigurationError, Options
+from raycaster.errors import listed
+from raycaster.rtl.engine.engine import Engine
+from raycaster.rtl.engines import ENGINES
+
+if TYPE_CHECKING:
+    EngineName = str
+else:
+    EngineName = Literal[*ENGINES]
+
+
+@validated_dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid"))
+class Choice(Options):
+    """Options with the name of an engine that exists."""
+
+    engine: EngineName = Field(
+        next(iter(ENGINES)),
+        description=f"engine that computes the rays: {listed(ENGINES)}; by default exact for a scene that needs it",
+    )
+
+
+OPTIONS: Mapping[str, FieldInfo] = {
+    name: field for name, field in vars(Choice)["__pydantic_fields__"].items() if name != "fixed"
+}
+"""All options by name, with bounds, default and help, except `fixed`, which comes from a scene."""
+
+
+def decided(options: Options) -> Configuration:
+    """Decide everything that the user left open.
+
+    Raises:
+        ValueError: no such design is possible; the text is `option: why, and what to do instead`.
+    """
+    engine, fixed = ENGINES[options.engine], options.fixed
+    if fixed is not None and len(fixed.passes) != options.reflections + 1:
+        raise ValueError(f"fixed: is for {len(fixed.passes) - 1} reflections, not {options.reflections}")
+    rows = _rows(options, engine)
+    scale = _scale(options, engine, rows)
+    for look, reason in engine.facts.lacks.items():
+        if getattr(options, look):
+            raise ValueError(f"{look}: {reason}; {_instead(options)}")
+    if options.pixels > 1 and engine.facts.line_buffered:
+        raise ValueError(
+            f"pixels: the {options.engine} engine has 1 per clock, not {options.pixels}; {_instead(options)}"
+        )
+    engine.refuse(options)
+    decisions = {
+        "units": options.units or 1,
+        "rectangles": len(fixed.rectangles) if fixed else options.rectangles,
+        "rows": rows,
+        "scale": scale,
+        "divider_bits": 0,
+        "culling": engine.culls(options) if options.culling is None else options.culling,
+        **{look: bool(getattr(options, look)) for look in LOOK_NAMES},
+        "facts": engine.facts,
+    }
+    config = Configuration(**{**vars(options), **decisions})
+    columns = config.screen_geometry.columns
+    if columns % config.units:
+        divisors = ", ".join(str(n) for n in range(1, columns + 1) if columns % n == 0)
+        raise ValueError(f"units: {config.units} does not divide the {columns} columns; choose one of {divisors}")
+    config = engine.sized(config, options)
+    engine.check(config)
+    return config
+
+
+def _lacking(engine: Engine, options: Options) -> Iterator[str]:
+    """Yield the wanted features and the screen, in words, that an engine does not have."""
+    yield from (name for look, name in LOOK_NAMES.items() if getattr(options, look) and look in engine.facts.lacks)
+    if options.pixels > 1 and engine.facts.line_buffered:
+        yield f"{options.pixels} pixels per clock"
+    screens = [screen for place, screen in engine.facts.screens.items() if _matches(place, options)]
+    if not screens:
+        yield f"the {options.screen} screen" if options.rows is None else f"{options.rows} rows of {options.screen}"
+    elif options.scale is not None and all(options.scale not in engine.scales(screen) for screen in screens):
+        yield f"scale {options.scale}"
+
+
+def _matches(place: tuple[str, int], options: Options) -> bool:
+    return place[0] == options.screen and options.rows in (None, place[1])
+
+
+def _instead(options: Options) -> str:
+    """Return the engines with all that is wanted or, if there are none, what each of them lacks."""
+    lacking = {name: list(_lacking(engine, options)) for name, engine in ENGINES.items()}
+    able = [as_typed("engine", name) for name, lacks in lacking.items() if not lacks]
+    if able:
+        return f"choose {' or '.join(able)}"
+    lacks = ", ".join(f"{name} lacks {' and '.join(lacks)}" for name, lacks in lacking.items())
+    return f"no engine has all of it: {lacks}; leave something out"
+
+
+def _rows(options: Options, engine: Engine) -> int:
+    allowed = [rows for screen, rows in engine.facts.screens if screen == options.screen]
+    if not allowed:
+        raise ValueError(f"screen: the {options.engine} engine does not have {options.screen}; {_instead(options)}")
+    if options.rows is None:
+        return allowed[0]
+    if options.rows not in allowed:
+        choices = ", ".join(map(str, allowed))
+        known = any(_matches(place, options) for other in ENGINES.values() for place in other.facts.screens)
+        hint = f"; {_instead(options)}" if known else ""
+        raise ValueError(
+            f"rows: {options.engine} has {choices} rows on screen {options.screen}, not {options.rows}{hint}"
+        )
+    return options.rows
+
+
+def _scale(options: Options, engine: Engine, rows: int) -> int:
+    allowed = engine.scales(engine.facts.screens[options.screen, rows])
+    if options.scale is None:
+        return allowed[0]
+    if options.scale not in allowed:
+        scales = " or ".join(map(str, sorted(allowed)))
+        others = (other for other in ENGINES.values() if (options.screen, rows) in other.facts.screens)
+        known = any(options.scale in other.scales(other.facts.screens[options.screen, rows]) for other in others)
+        hint = f"; {_instead(options)}" if known else ""
+        raise ValueError(f"scale: the {options.engine} engine shows {rows} rows at {scales}, not {options.scale}{hint}")
+    return options.scale
+
+
+def configure(**values: Any) -> Configuration:
+    """Make a configuration from options, given as values or as text.
+
+    Raises:
+        ConfigurationError: one line that names the option, what was given and what was expected.
+    """
+    try:
+        return decided(Choice(**values))
+    except ValidationError as error:
+        raise ConfigurationError(refusal(error.errors(), depth=1)) from None
+    except ValueError as error:
+        raise ConfigurationError(str(error)) from None

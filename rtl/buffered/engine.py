@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""Base class of the engines with a line buffer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+from raycaster.complaints import as_typed
+from raycaster.configuration import Configuration
+from raycaster.rtl.buffered.ray_caster_renderer import ray_caster_renderer
+from raycaster.rtl.engine.engine import Engine
+
+GROUP_OVERHEAD = 4
+"""Fixed cycles per group: the write to the line buffer with the two-cycle reset, idling, ray generation."""
+
+
+@dataclass(frozen=True, eq=False)
+class LineBufferedEngine(Engine):
+    """An engine whose units fill a line buffer, a group of neighbouring columns at a time.
+
+    Attributes:
+        control: the block that operates all units.
+        unit: the block of one unit.
+    """
+
+    control: Callable[..., Any]
+    unit: Callable[..., Any]
+
+    @property
+    def renderer(self) -> Callable[..., Any]:
+        """`ray_caster_renderer` with this engine's units."""
+        return partial(ray_caster_renderer, control=self.control, unit=self.unit)
+
+    def group_cycles(self, config: Configuration) -> int:
+        """Add the cycles for the rectangles of each pass, the latency of each pass, and the overhead of a group."""
+        tests = sum(mask.bit_count() for mask in config.passes) * self.rect_cycles(config)
+        return tests + len(config.passes) * self.pass_latency(config) + GROUP_OVERHEAD
+
+    def fewest_units(self, config: Configuration) -> Configuration:
+        """Return the design with the fewest units that meet the row budget, or one unit per column if none do."""
+        columns = config.screen_geometry.columns
+        tried = (replace(config, units=units) for units in range(1, columns + 1) if columns % units == 0)
+        return next((one for one in tried if self.fits(one)), replace(config, units=columns))
+
+    def fits(self, config: Configuration) -> bool:
+        """Return True if a row is ready before the row above it has been shown."""
+        return self.group_cycles(config) <= config.group_budget
+
+    def check(self, config: Configuration) -> None:
+        """Compare a group's cycles with the row budget."""
+        if config.allow_underrun or self.fits(config):
+            return
+        raise ValueError(
+            f"row budget: a group of {config.units} columns takes {self.group_cycles(config)} cycles with "
+            f"{config.rectangles} rectangles, {config.reflections} reflections and {self.rect_cycles(config)} cycles "
+            f"per rectangle, but a row leaves it {config.group_budget} (less than {config.screen_geometry.row_cycles} "
+            f"cycles over {config.groups} groups); take more units or divider bits, fewer rectangles, reflections or "
+            f"fraction bits, or {as_typed('allow_underrun', True)}"
+        )

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: MIT
+"""The engines."""
+
+from collections.abc import Mapping
+
+from raycaster.configuration import Configuration
+from raycaster.rtl.beam.engine import BEAM
+from raycaster.rtl.engine.engine import Engine
+from raycaster.rtl.exact.engine import EXACT
+from raycaster.rtl.seed.engine import SEED
+
+ENGINES: Mapping[str, Engine] = {one.facts.name: one for one in (SEED, EXACT, BEAM)}
+"""Engines by name; the first one is the default."""
+
+
+def engine_of(config: Configuration) -> Engine:
+    """Return the engine of a design."""
+    return ENGINES[config.engine]
