@@ -18,9 +18,9 @@ from raycaster.docs import timing
 from raycaster.docs.drawings import draw_all
 from raycaster.errors import UserError
 from raycaster.output import printable, replaced
+from raycaster.runs.waits import announce
 from raycaster.sim import ensure_tools
 from raycaster.sim.simulator import BUILD, SimulationError
-from raycaster.waits import announce
 from raycaster.web.site import main as build_page
 
 HERE = Path(__file__).resolve().parent

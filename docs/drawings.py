@@ -11,9 +11,9 @@ from typing import Any
 import wavedrom
 
 from raycaster.docs import blocks, timing
-from raycaster.outcomes import RESULTS, kept_outcome
 from raycaster.report import plots
 from raycaster.report.designs import of_kept, work_precision
+from raycaster.runs.outcomes import RESULTS, kept_outcome
 
 DIAGRAMS = Path(__file__).parent / "diagrams"
 

@@ -14,7 +14,6 @@ from raycaster.buses import BUSES
 from raycaster.configuration import LOOK_NAMES
 from raycaster.design.decide import OPTIONS, configure
 from raycaster.docs.timing import CONFIGURATION
-from raycaster.outcomes import table
 from raycaster.registers import compile_registers
 from raycaster.rtl.beam import latencies as beam
 from raycaster.rtl.buffered.engine import GROUP_OVERHEAD
@@ -24,6 +23,7 @@ from raycaster.rtl.engine.engine import Engine
 from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
 from raycaster.rtl.engines import ENGINES, EXACT, SEED
 from raycaster.rtl.exact.exact_control import PATTERN_LATENCY, WRITE_AT
+from raycaster.runs.outcomes import table
 
 ACCESS = {"r": "read", "rw": "read, write", "woclr": "read, write 1 to clear", "woset": "read, write 1 to set"}
 

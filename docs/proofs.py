@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from raycaster.configuration import Configuration
 from raycaster.design.decide import configure
-from raycaster.outcomes import table
+from raycaster.runs.outcomes import table
 from raycaster.verif.formal.alone import FIXED_SCENE, TableAlone
 from raycaster.verif.formal.lemmas import LEMMAS
 from raycaster.verif.formal.properties import PROPERTIES

@@ -17,7 +17,7 @@ from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.errors import UserError, faults_in_one_line
 from raycaster.hdl.hierarchy import convert_hierarchy
 from raycaster.hdl.signals import bit, unsigned
-from raycaster.outcomes import table
+from raycaster.runs.outcomes import table
 
 MODULE = """\
 from myhdl import ConcatSignal, Constant, Signal, always, always_comb, block, concat, instances, intbv

@@ -21,9 +21,9 @@ from raycaster.docs.proofs import proofs
 from raycaster.docs.tables import is_stale, outcomes, tables
 from raycaster.errors import UserError
 from raycaster.fpga.cells import FAMILIES, measure
-from raycaster.outcomes import RESULTS, add_keep_option, keep
 from raycaster.output import Console, Table, printable
 from raycaster.rtl.engines import ENGINES
+from raycaster.runs.outcomes import RESULTS, add_keep_option, keep
 from raycaster.scene import packaged_scenes
 from raycaster.sim.scenes import RESULT, output_directory
 

@@ -12,9 +12,9 @@ from raycaster.cli.__main__ import loaded
 from raycaster.cli.commands import COMMANDS
 from raycaster.complaints import as_typed
 from raycaster.errors import UserError
-from raycaster.outcomes import RESULTS, Outcome, kept_outcome, table
 from raycaster.report.designs import best_of, of_kept
 from raycaster.rtl.engines import ENGINES
+from raycaster.runs.outcomes import RESULTS, Outcome, kept_outcome, table
 
 
 def _engines(kept: Outcome) -> str:

@@ -21,11 +21,11 @@ from raycaster.design.options import CommandParser, add_configuration_options, a
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.fpga.cells import FAMILIES, Area, Family, measure, measure_modules
-from raycaster.jobs import run_jobs, threads
-from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table
 from raycaster.rtl.engines import ENGINES
-from raycaster.waits import announce
+from raycaster.runs.jobs import run_jobs, threads
+from raycaster.runs.outcomes import add_keep_option, keep
+from raycaster.runs.waits import announce
 
 JOBS = 2
 

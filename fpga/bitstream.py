@@ -36,12 +36,12 @@ from raycaster.fpga.board import OpenBoard, board_names, find_board
 from raycaster.fpga.flows import FLOWS, Clocks, Flow, clocks_for, place_and_route
 from raycaster.fpga.netlist import write_netlist
 from raycaster.memory_map import PROGRAM_FILE
-from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table, replaced
 from raycaster.rtl.system.scene_player import BUTTONS
+from raycaster.runs.outcomes import add_keep_option, keep
+from raycaster.runs.tools import find_program, prepare_wasm, run_program
 from raycaster.scene import find_scene
 from raycaster.sw.firmware import build_firmware
-from raycaster.tools import find_program, prepare_wasm, run_program
 
 HERE = Path(__file__).parent
 GAME_ENGINE = "exact"

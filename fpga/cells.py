@@ -18,7 +18,7 @@ from raycaster.configuration import Configuration
 from raycaster.convert.take_home import TOP
 from raycaster.convert.write import write_verilog
 from raycaster.hdl.verilog_style import without_power_up
-from raycaster.tools import run_yosys
+from raycaster.runs.tools import run_yosys
 
 HARD_MULTIPLIER = Path(__file__).with_name("hard_multiplier.v")
 

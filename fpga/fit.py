@@ -26,13 +26,13 @@ from raycaster.fpga.cells import FAMILIES, Area, measure
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong
-from raycaster.jobs import processes, run_jobs
-from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table
 from raycaster.rtl.engines import ENGINES, engine_of
+from raycaster.runs.jobs import processes, run_jobs
+from raycaster.runs.outcomes import add_keep_option, keep
+from raycaster.runs.tools import find_program
+from raycaster.runs.waits import announce
 from raycaster.scene import load_scene
-from raycaster.tools import find_program
-from raycaster.waits import announce
 
 FRACTIONS, ROUNDINGS = range(9), ("truncate", "nearest")
 GENERAL = "general"

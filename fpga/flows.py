@@ -16,7 +16,7 @@ from raycaster.configuration import Configuration
 from raycaster.errors import UserError
 from raycaster.fpga.board import OpenBoard
 from raycaster.fpga.multipliers import register_products
-from raycaster.tools import run_program
+from raycaster.runs.tools import run_program
 
 SYSTEM_CLOCK, SHIFT_CLOCK = "clk", "shift_clk"
 TOLERANCE = 0.0051

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from raycaster.fpga.flows import Flow
-from raycaster.tools import run_yosys
+from raycaster.runs.tools import run_yosys
 
 DECIDES = ("fpga/flows.py", "fpga/multipliers.py", "fpga/netlist.py")
 """Sources that decide a netlist, besides the Verilog."""

@@ -142,7 +142,7 @@ class Console(rich.console.Console):
 
         Args:
             what: text to show.
-            usual: usual duration, in words; see `raycaster.waits`.
+            usual: usual duration, in words; see `raycaster.runs.waits`.
         """
         text = f"{what} ({usual})" if usual else what
         if not self.is_terminal:

@@ -16,7 +16,7 @@ from raycaster.design.options import run_command
 from raycaster.errors import UserError, not_installed
 from raycaster.memory_map import MEMORY, MEMORY_BYTES
 from raycaster.output import Console, Table, printable, replaced
-from raycaster.tools import ToolError, run_program
+from raycaster.runs.tools import ToolError, run_program
 
 SOFTWARE = Path(__file__).parent
 FIRMWARE = SOFTWARE / "firmware"

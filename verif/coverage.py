@@ -19,10 +19,9 @@ from raycaster.configuration import Configuration
 from raycaster.convert.digest import verilog_digest
 from raycaster.design.decide import configure
 from raycaster.design.options import CommandParser, add_build_option
-from raycaster.golden.catalogue import catalogue
-from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, run_jobs
-from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table, emptied
+from raycaster.runs.jobs import Kept, add_fresh_option, add_job_options, executors, run_jobs
+from raycaster.runs.outcomes import add_keep_option, keep
 from raycaster.scene import find_scene, load_scene, packaged_scenes
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import (
@@ -34,6 +33,7 @@ from raycaster.sim.simulator import (
     build_model,
     run_bench,
 )
+from raycaster.verif.catalogue import catalogue
 from raycaster.verif.soak.soak import bench_digest
 
 # One design per engine that every bench can run, at full size, so that the counters run through their range. The seed

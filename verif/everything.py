@@ -19,10 +19,10 @@ from raycaster.convert.digest import verilog_digest
 from raycaster.design.decide import configure
 from raycaster.design.options import CommandParser, outside_make
 from raycaster.errors import UserError
-from raycaster.jobs import add_fresh_option, positive
-from raycaster.outcomes import add_keep_option, commit_of, keep
 from raycaster.output import Console
 from raycaster.rtl.engines import ENGINES
+from raycaster.runs.jobs import add_fresh_option, positive
+from raycaster.runs.outcomes import add_keep_option, commit_of, keep
 from raycaster.sim import ensure_tools
 from raycaster.verif.seeds import VARIABLE, add_seed_option, drawn
 

@@ -22,11 +22,11 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.design.options import CommandParser, outside_make
-from raycaster.digests import digest
 from raycaster.errors import UserError
-from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, run_jobs
-from raycaster.outcomes import commit_of
 from raycaster.output import Console, Table
+from raycaster.runs.digests import digest
+from raycaster.runs.jobs import Kept, add_fresh_option, add_job_options, executors, run_jobs
+from raycaster.runs.outcomes import commit_of
 from raycaster.verif.mutation.mutate import SEED, leaf_tests, leaves_of_modules, mutate
 from raycaster.verif.recording import recording_name
 

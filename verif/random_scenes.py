@@ -8,7 +8,9 @@ from collections.abc import Collection
 import numpy as np
 
 from raycaster.configuration import WORLD_SIZE
-from raycaster.golden.random_world import (
+from raycaster.golden.world import Rectangles
+from raycaster.scene import PATTERNS, Camera, Rectangle, Scene
+from raycaster.verif.random_world import (
     EXTREMES,
     ROOM,
     random_camera,
@@ -17,8 +19,6 @@ from raycaster.golden.random_world import (
     random_looks,
     random_rectangles,
 )
-from raycaster.golden.world import Rectangles
-from raycaster.scene import PATTERNS, Camera, Rectangle, Scene
 
 STYLES = ("room", "boxes", "slits", "degenerate", "extreme", "corners")
 

@@ -10,8 +10,8 @@ import shlex
 from typing import Any
 
 from raycaster.design.options import command_line
-from raycaster.jobs import natural
 from raycaster.output import Console
+from raycaster.runs.jobs import natural
 
 DEFAULT = 20150
 VARIABLE = "RAYCASTER_SEED"

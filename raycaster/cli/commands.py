@@ -36,7 +36,7 @@ COMMANDS: Mapping[str, Command] = {
     "web": Command("raycaster.web.site", "write a page that runs the hardware in the browser", "play"),
     "trace": Command("raycaster.debug.trace", "follow one pixel through the hardware"),
     "wave": Command("raycaster.debug.wave", "write the waveform of some rows"),
-    "verilog": Command("raycaster.fpga.verilog", "write the hardware as Verilog"),
+    "verilog": Command("raycaster.convert.verilog", "write the hardware as Verilog"),
     "fit": Command("raycaster.fpga.fit", "find the smallest hardware for a scene", "fpga"),
     "area": Command("raycaster.fpga.area", "count the cells of a design", "fpga"),
     "bitstream": Command("raycaster.fpga.bitstream", "make a bitstream for a board", "fpga"),

@@ -10,11 +10,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from raycaster.configuration import Configuration
-from raycaster.digests import DIGITS, digest, uncommented
 from raycaster.hdl.elaboration import elaborated, elaboration
 from raycaster.hdl.hierarchy import convert_hierarchy
 from raycaster.rtl.system.ports import module_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
+from raycaster.runs.digests import DIGITS, digest, uncommented
 
 
 def verilog_digest(*designs: Configuration) -> str:

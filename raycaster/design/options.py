@@ -24,8 +24,8 @@ from raycaster.design.decide import OPTIONS
 from raycaster.errors import UserError
 from raycaster.hdl.errors import fault_in_block
 from raycaster.output import printable
+from raycaster.runs.tools import ToolError
 from raycaster.scene import find_scene
-from raycaster.tools import ToolError
 
 BUILD = Path("build")
 """Default directory for all output."""

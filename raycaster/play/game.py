@@ -26,11 +26,11 @@ from raycaster.design.options import (
     given_options,
 )
 from raycaster.errors import UserError
-from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table, emptied, printable
 from raycaster.play.machine import Machine, build_machine
 from raycaster.play.system import FASTEST, play
 from raycaster.play.walk import Walker, design_to_walk
+from raycaster.runs.outcomes import add_keep_option, keep
 from raycaster.scene import Light
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, announced, build_model

@@ -15,8 +15,6 @@ from typing import Any
 from raycaster.convert.digest import verilog_digest
 from raycaster.design.options import CommandParser
 from raycaster.errors import UserError
-from raycaster.jobs import add_job_options, executors
-from raycaster.outcomes import RESULTS, add_keep_option, keep, kept_outcome
 from raycaster.output import Console
 from raycaster.report.designs import design_chapter, find_designs, of_kept, to_keep
 from raycaster.report.errors import error_chapter, find_pictures
@@ -25,6 +23,8 @@ from raycaster.report.omissions import omission_chapter
 from raycaster.report.page import Chapter, Section, write
 from raycaster.report.points import Sweep
 from raycaster.report.stability import stability_chapter
+from raycaster.runs.jobs import add_job_options, executors
+from raycaster.runs.outcomes import RESULTS, add_keep_option, keep, kept_outcome
 from raycaster.sim.simulator import SimulationError
 
 SCENES = Path("raycaster/scenes")

@@ -17,11 +17,11 @@ from matplotlib.figure import Figure
 from raycaster.configuration import Configuration, ConfigurationError, Rounding
 from raycaster.convert.take_home import TOP
 from raycaster.design.decide import OPTIONS, configure
-from raycaster.outcomes import RESULTS, kept_outcome
 from raycaster.report import plots
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
 from raycaster.report.points import Point, Sweep, predicted_cycles, required_mhz
 from raycaster.rtl.engines import engine_of
+from raycaster.runs.outcomes import RESULTS, kept_outcome
 
 WORST_SCENE = "raycaster/scenes/mirror_room.toml"
 """Scene for the simulations: it fills the designs' rectangle tables, so no row of another scene takes longer."""

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from raycaster.configuration import LOOKS, Configuration
-from raycaster.golden.catalogue import Case, catalogue
 from raycaster.report.designs import exact_designs, seed_designs
+from raycaster.verif.catalogue import Case, catalogue
 
 CASE_REFLECTIONS = 2
 """Number of reflections in the catalogue's cases."""

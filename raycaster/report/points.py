@@ -24,26 +24,26 @@ from raycaster.convert.take_home import TOP
 from raycaster.design.decide import configure
 from raycaster.design.for_scene import design_for
 from raycaster.design.options import add_configuration_options, as_options, given_options, run_command
-from raycaster.digests import digest, sources_digest, tools_digest
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix, fixed_rectangle, with_camera
 from raycaster.fixed import FixedScene
 from raycaster.fpga.cells import FAMILIES, measure
-from raycaster.golden.catalogue import catalogue
-from raycaster.golden.errors import condition, depth_errors
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.model import Model, Trace
 from raycaster.golden.picture import wrong_pixels
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import Rectangles
-from raycaster.jobs import Kept, positive, run_jobs
 from raycaster.output import Console
+from raycaster.report.depth_errors import condition, depth_errors
 from raycaster.rtl.engines import engine_of
+from raycaster.runs.digests import digest, sources_digest, tools_digest
+from raycaster.runs.jobs import Kept, positive, run_jobs
 from raycaster.scene import Scene, dump_scene, load_scene
 from raycaster.screens import SCREENS
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import build_model, run_bench, system_verilator
+from raycaster.verif.catalogue import catalogue
 from raycaster.verif.random_scenes import random_scene
 
 CASE, SEED = "case:", "seed:"
@@ -177,7 +177,7 @@ def _picture(point: Point) -> dict[str, Any]:
 
     Returns:
         Number and share of wrong pixels; the picture's condition number; errors by depth of reflection, as in
-        `raycaster.golden.errors.DepthErrors`.
+        `raycaster.report.depth_errors.DepthErrors`.
     """
     config, scene = point.config, point.scene
     # Frozen models are hashable, but pydantic's types do not show it.
@@ -313,7 +313,7 @@ class Sweep:
 
     Attributes:
         directory: directory of results, one atomically written file per point.
-        make_executor: function that `raycaster.jobs.executors` yields.
+        make_executor: function that `raycaster.runs.jobs.executors` yields.
         console: console for the progress bars.
     """
 

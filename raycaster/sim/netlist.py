@@ -14,13 +14,13 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import raycaster
-from raycaster.digests import digest
 from raycaster.errors import UserError, not_installed
 from raycaster.fpga.board import OpenBoard, board_names, find_board
 from raycaster.fpga.flows import FLOWS
 from raycaster.fpga.netlist import DECIDES, write_netlist
+from raycaster.runs.digests import digest
+from raycaster.runs.tools import run_yosys
 from raycaster.sim.simulator import made
-from raycaster.tools import run_yosys
 
 HERE = Path(__file__).parent
 

@@ -32,10 +32,11 @@ from raycaster.design.options import (
 )
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
-from raycaster.jobs import processes
-from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import MARK, Console, Table, check_replaceable, printable, put, remove, replaced
 from raycaster.rtl.engines import ENGINES, SEED
+from raycaster.runs.jobs import processes
+from raycaster.runs.outcomes import add_keep_option, keep
+from raycaster.runs.waits import building
 from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.job import Job
@@ -51,7 +52,6 @@ from raycaster.sim.simulator import (
     run_bench,
     when_made,
 )
-from raycaster.waits import building
 
 GATES_OPTIONS: Mapping[str, Any] = {"screen": "tiny", "units": 16, "reflections": 2}
 """A netlist's default options: the fewest units, if a row is buffered, with which one design shows all packaged scenes

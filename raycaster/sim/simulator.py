@@ -37,15 +37,16 @@ import raycaster.hdl
 import raycaster.rtl
 from raycaster.buses import OWN
 from raycaster.configuration import Configuration, Facts
+from raycaster.convert.write import write_system, write_verilog
 from raycaster.design.options import BUILD
-from raycaster.digests import sources_digest, tools_digest
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, clocks_per_bit
 from raycaster.output import Console, emptied, remove
 from raycaster.places import ODD_FOR_SHELLS, ODD_FOR_TOOLS, odd_character
 from raycaster.registers import address_bits
+from raycaster.runs.digests import sources_digest, tools_digest
+from raycaster.runs.waits import building
 from raycaster.sim.job import Job
-from raycaster.waits import building
 
 SIMULATORS = ("verilator", "icarus")
 MODELS_VARIABLE = "RAYCASTER_MODELS"
@@ -289,9 +290,7 @@ def convert(configuration: Configuration, build: Path = BUILD, *, system: bool =
     with made(parent, "system" if system else "verilog", (), made_with) as (directory, fresh):
         names = directory / "modules"
         if fresh:
-            from raycaster.convert import write as converter  # noqa: PLC0415 - MyHDL is only loaded where it has work
-
-            write = converter.write_system if system else converter.write_verilog
+            write = write_system if system else write_verilog
             files = write(configuration, directory)
             names.write_text("".join(f"{path.name}\n" for path in files if path.suffix == ".v"))
         return [directory / name for name in names.read_text().split()]

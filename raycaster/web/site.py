@@ -18,12 +18,12 @@ from raycaster.configuration import LOOKS, MOST_RECTANGLES, WORLD_SIZE, Configur
 from raycaster.design.decide import configure
 from raycaster.design.options import CommandParser, add_build_option
 from raycaster.errors import UserError
-from raycaster.jobs import processes, run_jobs
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.output import Console, replaced
 from raycaster.play.walk import DRAG, STEEPEST, STEP, TURN, TURNS, WALKS
 from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
 from raycaster.rtl.engines import SEED
+from raycaster.runs.jobs import processes, run_jobs
 from raycaster.scene import COMPLAINTS, PATTERN_KEYS, PATTERNS, Scene, packaged_scenes
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware

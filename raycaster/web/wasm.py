@@ -14,8 +14,8 @@ from raycaster.design.options import BUILD
 from raycaster.errors import UserError, not_installed
 from raycaster.play.machine import MACHINE as MACHINE_HEADER
 from raycaster.play.machine import SIGNS, TOP, machine_sources
+from raycaster.runs.tools import TIMEOUT, ToolError, run_program
 from raycaster.sim.simulator import VERILATED_DEFINITIONS, find_tool, library_sources, made, models, verilate
-from raycaster.tools import TIMEOUT, ToolError, run_program
 from raycaster.web.taps import tapped_signals, taps_verilog
 
 HERE = Path(__file__).parent

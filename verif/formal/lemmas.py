@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from raycaster.output import emptied
-from raycaster.tools import run_program
+from raycaster.runs.tools import run_program
 
 SOLVERS = ("z3", "cvc5")
 

@@ -23,10 +23,10 @@ from rich.text import Text
 from raycaster.convert.digest import verilog_digest
 from raycaster.design.options import CommandParser
 from raycaster.errors import UserError, not_installed
-from raycaster.jobs import add_job_options, executors, positive, run_jobs
-from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table
-from raycaster.tools import TIMEOUT
+from raycaster.runs.jobs import add_job_options, executors, positive, run_jobs
+from raycaster.runs.outcomes import add_keep_option, keep
+from raycaster.runs.tools import TIMEOUT
 from raycaster.verif.formal.lemmas import LEMMAS, Lemma, prove_lemma
 from raycaster.verif.formal.properties import PROPERTIES
 from raycaster.verif.formal.prover import Property, Result, inputs_of, prove, with_all_looks

@@ -15,13 +15,13 @@ from pathlib import Path
 from raycaster.configuration import Configuration
 from raycaster.convert.write import write_verilog
 from raycaster.design.decide import configure
-from raycaster.digests import uncommented
 from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.hierarchy import convert_hierarchy
 from raycaster.hdl.verilog_style import without_power_up
 from raycaster.output import emptied
 from raycaster.rtl.engines import ENGINES
-from raycaster.tools import TIMEOUT, ToolError, find_program, run_program, run_yosys
+from raycaster.runs.digests import uncommented
+from raycaster.runs.tools import TIMEOUT, ToolError, find_program, run_program, run_yosys
 from raycaster.verif.formal.alone import Alone
 from raycaster.verif.formal.lemmas import SOLVERS, Lemma
 from raycaster.verif.formal.wrapper import completed, source

@@ -35,14 +35,14 @@ import raycaster
 from raycaster import golden, hdl, rtl
 from raycaster.convert.digest import verilog_digest
 from raycaster.design.options import CommandParser
-from raycaster.digests import digest
 from raycaster.errors import UserError
-from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, positive, run_jobs
-from raycaster.outcomes import RESULTS, add_keep_option, keep, kept_outcome
 from raycaster.output import Console, Table, emptied
+from raycaster.runs.digests import digest
+from raycaster.runs.jobs import Kept, add_fresh_option, add_job_options, executors, positive, run_jobs
+from raycaster.runs.outcomes import RESULTS, add_keep_option, keep, kept_outcome
+from raycaster.runs.tools import ToolError, run_yosys
 from raycaster.sim import ensure_tools
 from raycaster.sim.simulator import build_program
-from raycaster.tools import ToolError, run_yosys
 from raycaster.verif import expected, recording, seeds
 from raycaster.verif.formal.prover import with_all_looks
 from raycaster.verif.recording import RECORD_VARIABLE, recording_name

@@ -10,10 +10,10 @@ from pathlib import Path
 import cocotb
 from cocotb.handle import HierarchyObject
 
-from raycaster.golden.catalogue import catalogue
 from raycaster.golden.picture import count_wrong
 from raycaster.scene import Scene, dump_scene, load_scene
 from raycaster.sim.harness import Harness
+from raycaster.verif.catalogue import catalogue
 from raycaster.verif.random_scenes import random_scene
 
 

@@ -27,11 +27,10 @@ from raycaster.design.options import (
     command_line,
     given_options,
 )
-from raycaster.digests import digest
-from raycaster.golden.catalogue import catalogue
-from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, natural, positive, run_jobs
-from raycaster.outcomes import add_keep_option, keep
 from raycaster.output import Console, Table, emptied
+from raycaster.runs.digests import digest
+from raycaster.runs.jobs import Kept, add_fresh_option, add_job_options, executors, natural, positive, run_jobs
+from raycaster.runs.outcomes import add_keep_option, keep
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import (
     Model,
@@ -42,6 +41,7 @@ from raycaster.sim.simulator import (
     run_bench,
 )
 from raycaster.verif import benches, random_scenes
+from raycaster.verif.catalogue import catalogue
 from raycaster.verif.random_scenes import style_of
 from raycaster.verif.seeds import add_seed_option, drawn
 

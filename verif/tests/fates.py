@@ -9,13 +9,13 @@ import numpy as np
 from vectors import Bench, check_fetches
 
 from raycaster.configuration import WORLD_SIZE, Configuration
-from raycaster.golden.random_world import random_looks
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.common.interfaces import GroupFate, ShadowPass
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 from raycaster.rtl.engines import engine_of
 from raycaster.verif.expected import EARLY_OUT_AT, TraceCycle, ends_early, rect_cycles, sorted_rect, trace_cycles
+from raycaster.verif.random_world import random_looks
 
 
 def control_leaf(leaf_of: Callable[..., Bench], function: Callable, config: Configuration) -> Bench:

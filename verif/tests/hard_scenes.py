@@ -11,8 +11,8 @@ from definition import exact_hit
 
 from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE, Configuration
 from raycaster.golden.engines import model_of
-from raycaster.golden.random_world import random_camera, random_looks, random_rectangles
 from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.verif.random_world import random_camera, random_looks, random_rectangles
 from raycaster.verif.seeds import repeat
 
 

@@ -21,8 +21,8 @@ from raycaster.fpga.bitstream import write_project
 from raycaster.fpga.board import TOP, OpenBoard, QuartusBoard, board_names, find_board
 from raycaster.fpga.flows import FLOWS
 from raycaster.fpga.quartus import write_project as write_quartus_project
+from raycaster.runs.tools import run_yosys
 from raycaster.scene import load_scene
-from raycaster.tools import run_yosys
 
 BOARDS = board_names(OpenBoard)
 NAMED = {

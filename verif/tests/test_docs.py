@@ -15,14 +15,14 @@ from pathlib import Path
 import pytest
 from conftest import BUILD, ROOT, called, make
 
-from raycaster import outcomes
 from raycaster.convert import digest
 from raycaster.design.options import CommandParser
-from raycaster.digests import uncommented
 from raycaster.docs import blocks, drawings, facts, pages, proofs, tables, timing
 from raycaster.docs.hdl import parts
 from raycaster.docs.results import main as results
 from raycaster.rtl import engine
+from raycaster.runs import outcomes
+from raycaster.runs.digests import uncommented
 
 EVERY_PAGE = "".join(page.read_text() for page in pages.PAGES)
 BLOCKS = re.findall(r"^```sh\n(.*?)^```", EVERY_PAGE, re.M | re.S)

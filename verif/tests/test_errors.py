@@ -9,15 +9,15 @@ from itertools import product
 import numpy as np
 import pytest
 
-from raycaster.golden.catalogue import catalogue
-from raycaster.golden.errors import condition, depth_errors
 from raycaster.golden.exact import ExactModel
-from raycaster.golden.random_world import random_camera, random_rectangles, random_slopes
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import Rectangles
+from raycaster.report.depth_errors import condition, depth_errors
 from raycaster.report.points import CASE, picture
 from raycaster.screens import SCREENS
+from raycaster.verif.catalogue import catalogue
+from raycaster.verif.random_world import random_camera, random_rectangles, random_slopes
 
 SLOPES = primary_slopes(SCREENS["tiny", 48]).reshape(-1, 3)
 

@@ -14,8 +14,8 @@ from conftest import ROOT, TINY, plant, run_tool
 from raycaster.convert.write import write_verilog
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.seed_engine import SeedModel
+from raycaster.runs.tools import find_program
 from raycaster.scene import load_scene
-from raycaster.tools import find_program
 
 BENCH = """
 module example_bench;

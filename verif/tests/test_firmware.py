@@ -16,10 +16,10 @@ from unicorn import riscv_const
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTONS, MEMORY, MEMORY_BYTES, RAY_TRACER, UART, UART_BUSY, c_header
 from raycaster.registers import register_map
+from raycaster.runs.tools import ToolError
 from raycaster.sim.register_model import LiveScene
 from raycaster.sw.firmware import FIRMWARE, SOURCES, START, Firmware, build_firmware, main
 from raycaster.sw.play_script import DEMO, load
-from raycaster.tools import ToolError
 
 MAP = register_map(CONFIG.rectangles)
 PAGE = 0x1000

@@ -21,8 +21,8 @@ from myhdl import (
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import bit, reset_signal, signed, unsigned
+from raycaster.runs.tools import run_yosys
 from raycaster.sim.simulator import find_tool
-from raycaster.tools import run_yosys
 
 PROGRAMS = []
 """Blocks with the makers of their arguments."""

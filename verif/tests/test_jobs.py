@@ -19,7 +19,7 @@ from distributed import LocalCluster
 from rich.console import Console
 
 from raycaster.errors import UserError
-from raycaster.jobs import Kept, executors, processes, run_jobs
+from raycaster.runs.jobs import Kept, executors, processes, run_jobs
 from raycaster.verif import everything
 from raycaster.verif.seeds import VARIABLE
 

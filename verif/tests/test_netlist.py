@@ -24,6 +24,7 @@ from raycaster.fpga.multipliers import connect_register, register_products
 from raycaster.fpga.netlist import write_netlist
 from raycaster.output import emptied
 from raycaster.rtl.seed.ray_unit import ray_unit
+from raycaster.runs.tools import ToolError
 from raycaster.scene import packaged_scenes
 from raycaster.sim import netlist
 from raycaster.sim import scenes as simulate
@@ -38,7 +39,6 @@ from raycaster.sim.netlist import (
     with_their_cells,
 )
 from raycaster.sim.simulator import SIMULATORS, SimulationError, build_program, convert
-from raycaster.tools import ToolError
 
 LIGHT = "[light]\nposition = [60, 100, 300]\n"
 

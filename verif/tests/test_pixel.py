@@ -20,7 +20,13 @@ from raycaster.design.decide import configure
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import WRONG, count_wrong, diff_picture, first_wrong, shown, wrong_pixels
-from raycaster.golden.random_world import (
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.seed_engine import SeedModel, divide
+from raycaster.golden.world import Rectangles
+from raycaster.rtl.engines import BEAM
+from raycaster.scene import Camera, Scene, load_scene, packaged_scenes
+from raycaster.screens import BEAM_SCREENS, SCREENS
+from raycaster.verif.random_world import (
     random_basis,
     random_camera,
     random_grid,
@@ -29,12 +35,6 @@ from raycaster.golden.random_world import (
     random_rectangles,
     random_slopes,
 )
-from raycaster.golden.rays import primary_slopes
-from raycaster.golden.seed_engine import SeedModel, divide
-from raycaster.golden.world import Rectangles
-from raycaster.rtl.engines import BEAM
-from raycaster.scene import Camera, Scene, load_scene, packaged_scenes
-from raycaster.screens import BEAM_SCREENS, SCREENS
 from raycaster.verif.seeds import seed
 
 BACKGROUND = (7, 80, 201)

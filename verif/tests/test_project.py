@@ -23,30 +23,30 @@ MAY_IMPORT = {
     "hdl": (),
     "raycaster": ("hdl",),
     "scenes": (),
+    "runs": ("raycaster",),
     "golden": ("raycaster",),
     "rtl": ("hdl", "raycaster"),
-    "design": ("hdl", "raycaster", "rtl"),
+    "design": ("hdl", "raycaster", "runs", "rtl"),
     "cli": ("raycaster", "rtl", "design"),
-    "sw": ("raycaster", "design"),
-    "convert": ("hdl", "raycaster", "rtl", "design"),
+    "sw": ("raycaster", "runs", "design"),
     "fit": ("raycaster", "golden", "design"),
-    "fpga": ("hdl", "raycaster", "golden", "rtl", "design", "sw", "convert", "fit"),
-    "sim": ("hdl", "raycaster", "golden", "rtl", "design", "convert", "fit", "fpga"),
+    "convert": ("hdl", "raycaster", "runs", "rtl", "design", "fit"),
+    "fpga": ("hdl", "raycaster", "runs", "golden", "rtl", "design", "sw", "fit", "convert"),
+    "sim": ("hdl", "raycaster", "runs", "golden", "rtl", "design", "fit", "convert", "fpga"),
     "debug": ("hdl", "raycaster", "golden", "rtl", "design", "convert", "sim"),
-    "play": ("hdl", "raycaster", "golden", "rtl", "design", "sw", "convert", "sim"),
-    "web": ("hdl", "raycaster", "rtl", "design", "sw", "convert", "sim", "debug", "play"),
-    "verif": ("hdl", "raycaster", "golden", "rtl", "design", "sw", "convert", "fit", "fpga", "sim", "debug"),
-    "report": ("hdl", "raycaster", "golden", "rtl", "design", "convert", "fit", "fpga", "sim", "verif"),
+    "play": ("raycaster", "runs", "golden", "rtl", "design", "sw", "convert", "sim"),
+    "web": ("raycaster", "runs", "rtl", "design", "sw", "sim", "debug", "play"),
+    "verif": ("hdl", "raycaster", "runs", "golden", "rtl", "design", "fit", "convert", "fpga", "sim"),
+    "report": ("raycaster", "runs", "golden", "rtl", "design", "fit", "convert", "fpga", "sim", "verif"),
     "docs": (
-        "hdl", "raycaster", "golden", "rtl", "design", "cli", "convert", "fit", "fpga", "sim", "debug", "play", "web",
-        "verif", "report",
+        "hdl", "raycaster", "runs", "rtl", "design", "cli", "convert", "fpga", "sim", "debug", "web", "verif", "report",
     ),
 }  # fmt: skip
 """Other folders that each folder may import from, without direct or indirect cycles."""
 
 MAY_IMPORT_IN_RTL = {
     "common": (),
-    "dvi": ("common",),
+    "dvi": (),
     "scene": ("common",),
     "video": ("common",),
     "bus": ("common", "scene"),
@@ -57,7 +57,7 @@ MAY_IMPORT_IN_RTL = {
     "exact": ("common", "engine", "buffered"),
     "beam": ("common", "engine", "video"),
     "engines.py": ("engine", "seed", "exact", "beam"),
-    "system": ("common", "dvi", "scene", "video", "bus", "engines.py"),
+    "system": ("common", "dvi", "scene", "bus", "engines.py"),
 }
 """Other folders of rtl/, and the list of engines, that each of them there may import from."""
 

@@ -17,8 +17,8 @@ from raycaster.design.decide import configure
 from raycaster.fpga import quartus
 from raycaster.fpga.board import TOP, QuartusBoard, board_names, find_board
 from raycaster.fpga.quartus import write_project
+from raycaster.runs.tools import run_yosys
 from raycaster.scene import load_scene
-from raycaster.tools import run_yosys
 
 SMALL = {"screen": "tiny", "units": 2, "rectangles": 3, "allow_underrun": True}
 SMALL_WORDS = ("--screen=tiny", "--units=2", "--rectangles=3", "--allow-underrun")

@@ -17,12 +17,12 @@ from rich.console import Console
 
 from raycaster.design.decide import configure
 from raycaster.fpga.cells import Area
-from raycaster.golden.catalogue import catalogue
 from raycaster.report import __main__ as report
 from raycaster.report import designs, plots, points
 from raycaster.report.extent import extent
 from raycaster.report.points import Point, Sweep, picture
 from raycaster.scene import find_scene
+from raycaster.verif.catalogue import catalogue
 
 CORNERS = str(ROOT / "raycaster" / "scenes" / "corners.toml")
 POINTS = (

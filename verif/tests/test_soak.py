@@ -12,9 +12,9 @@ import pytest
 from conftest import BUILD, ROOT, broken, called
 
 from raycaster.design.decide import configure
-from raycaster.golden.catalogue import catalogue
 from raycaster.scene import dump_scene, load_scene
 from raycaster.sim.simulator import SimulationError, convert
+from raycaster.verif.catalogue import catalogue
 from raycaster.verif.random_scenes import STYLES, random_scene
 
 LOOKS = ("turn", "materials", "patterns", "light")

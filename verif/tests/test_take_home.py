@@ -16,17 +16,17 @@ from tcl import tcl_calls
 
 from raycaster.buses import BRIDGED, BUSES, OWN
 from raycaster.configuration import Configuration
+from raycaster.convert import verilog
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM
 from raycaster.convert.register_views import HEADER
 from raycaster.convert.take_home import FILE_LIST, PREFIX, TOP, WAIVERS, waivers
 from raycaster.convert.write import write_verilog
 from raycaster.design.decide import configure
 from raycaster.fit.fixing import fix
-from raycaster.fpga import verilog
 from raycaster.hdl.hierarchy import prefixed
 from raycaster.registers import address_bits
 from raycaster.rtl.engines import ENGINES, EXACT
-from raycaster.tools import run_yosys
+from raycaster.runs.tools import run_yosys
 
 CONFIGURATIONS = [
     configure(),

@@ -15,7 +15,6 @@ from wasmtime import Instance, Module, Store
 from raycaster.configuration import LOOKS, Configuration
 from raycaster.design.decide import configure
 from raycaster.errors import UserError
-from raycaster.golden.catalogue import catalogue
 from raycaster.golden.engines import model_of
 from raycaster.golden.picture import shown
 from raycaster.program import scene_words
@@ -25,6 +24,7 @@ from raycaster.scene import load_scene, packaged_scenes
 from raycaster.screens import SCREENS, Screen
 from raycaster.sim.register_model import COMMIT_CLOCKS, LiveScene, SceneFollower
 from raycaster.sim.simulator import MODELS_VARIABLE
+from raycaster.verif.catalogue import catalogue
 from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.seeds import seed
 from raycaster.web import wasm

@@ -15,12 +15,12 @@ from vectors import AXES, LAST, Bench, any_place, by_axis, colour_word, designs,
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.design.decide import configure
 from raycaster.golden.exact import ExactModel
-from raycaster.golden.random_world import random_basis, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.beam.latencies import TESTER_LATENCY, fold_lead, is_staged, slope_at
 from raycaster.rtl.common.records import candidate_of, facet_of, stride_of, walk_of
 from raycaster.rtl.common.widths import steepest_slope, walk_bits
+from raycaster.verif.random_world import random_basis, random_camera, random_rectangles
 
 P, Q = (1, 0, 1), (2, 2, 0)
 """The axes p and q, indexed by a plane's axis: p is y unless the plane is on y, q is z unless it is on z."""

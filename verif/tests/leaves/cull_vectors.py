@@ -8,9 +8,9 @@ from vectors import AXES, any_config, any_place, designs
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.engines import model_of
-from raycaster.golden.random_world import random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.verif.random_world import random_camera, random_rectangles
 
 
 def culling_config(**options) -> Configuration:

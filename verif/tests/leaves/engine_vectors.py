@@ -22,12 +22,12 @@ from vectors import AXES, Bench, basis_inputs, by_axis, colour_word
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.design.decide import configure
-from raycaster.golden.random_world import random_basis
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.scene import UNTURNED
 from raycaster.screens import BEAM_SCREENS, SCREENS, Screen, Span
 from raycaster.verif.expected import TraceCycle, sorted_rect, trace_cycles
+from raycaster.verif.random_world import random_basis
 
 SMALL_SCREEN = Screen(
     columns=16, rows=4, horizon_row=3, doubling=2,

@@ -11,11 +11,11 @@ from vectors import any_config
 from raycaster.configuration import Configuration
 from raycaster.design.decide import configure
 from raycaster.fixed import FixedRectangle, FixedScene
-from raycaster.golden.random_world import random_looks, random_rectangles
 from raycaster.golden.world import Rectangles
 from raycaster.registers import register_map
 from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.sim.register_model import AXES, COLOURS
+from raycaster.verif.random_world import random_looks, random_rectangles
 from raycaster.verif.seeds import seed
 
 CYCLES = 500

@@ -14,12 +14,12 @@ import pytest
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.design.decide import configure
-from raycaster.golden.random_world import EXTREMES
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.signals import Signed, bit, reset_signal, signed, tied, unsigned
 from raycaster.registers import address_bits
 from raycaster.rtl.common import interfaces, records, widths
 from raycaster.rtl.engines import engine_of
+from raycaster.verif.random_world import EXTREMES
 from raycaster.verif.seeds import repeat
 
 PORTS: dict[str, int | Callable[[Any], Any]] = {

@@ -8,7 +8,6 @@ from hard_scenes import pixel_ports, traced_scene
 from vectors import basis_inputs, config_id
 
 from raycaster.golden.exact import ExactModel
-from raycaster.golden.random_world import random_basis, random_looks
 from raycaster.golden.rays import primary_slopes
 from raycaster.hdl.signals import Signed
 from raycaster.rtl.beam.beam_caster import beam_caster
@@ -18,6 +17,7 @@ from raycaster.rtl.common.widths import factor_bits
 from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
 from raycaster.scene import UNTURNED
 from raycaster.verif.expected import sorted_rect
+from raycaster.verif.random_world import random_basis, random_looks
 
 ALL = {"turn": True, "materials": True, "patterns": True}
 """Every feature of the engine."""

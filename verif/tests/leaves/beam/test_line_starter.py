@@ -5,12 +5,12 @@ import numpy as np
 from beam_vectors import beam_config
 from vectors import basis_inputs, by_axis, designs
 
-from raycaster.golden.random_world import random_basis
 from raycaster.hdl.signals import Signed
 from raycaster.rtl.beam.latencies import AIM_LATENCY
 from raycaster.rtl.beam.line_starter import line_starter
 from raycaster.rtl.common.widths import factor_bits
 from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
+from raycaster.verif.random_world import random_basis
 
 
 @designs(

@@ -6,13 +6,13 @@ from beam_vectors import WALK, beam_config, by_screen, flat_tables, products
 from vectors import any_place, by, by_axis, named
 
 from raycaster.configuration import Configuration
-from raycaster.golden.random_world import random_basis, random_looks
 from raycaster.golden.rays import primary_slopes
 from raycaster.rtl.common.interfaces import Direction
 from raycaster.rtl.common.records import Look, Point, growth_of
 from raycaster.rtl.common.widths import exact_slope_bits
 from raycaster.rtl.engine.rect_setup import SETUP_LATENCY, rect_setup
 from raycaster.verif.expected import sorted_rect
+from raycaster.verif.random_world import random_basis, random_looks
 
 
 def any_slope(random: np.random.Generator, config: Configuration) -> np.ndarray:

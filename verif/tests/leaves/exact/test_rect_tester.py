@@ -8,12 +8,12 @@ from hard_scenes import sharpened, verdict
 from vectors import LAST, by_axis, by_reflections, by_turn, exact_config, named, slope_inputs
 
 from raycaster.configuration import WORLD_SIZE, Configuration
-from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.world import Rectangles
 from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import exact_slope_bits, eye_bits
 from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.verif.expected import sorted_rect
+from raycaster.verif.random_world import EXTREMES, random_camera, random_rectangles
 
 LATENCY = 3
 

@@ -6,11 +6,11 @@ import pytest
 from vectors import LAST, by_axis, exact_config, named, slope_inputs
 
 from raycaster.configuration import WORLD_SIZE
-from raycaster.golden.random_world import EXTREMES
 from raycaster.rtl.common.interfaces import Slope
 from raycaster.rtl.common.records import Signs
 from raycaster.rtl.common.widths import exact_slope_bits, light_slope_bits
 from raycaster.rtl.exact.shadow_ray import shadow_ray
+from raycaster.verif.random_world import EXTREMES
 
 CASES = 200
 

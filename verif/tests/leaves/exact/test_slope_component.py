@@ -3,10 +3,10 @@
 
 from vectors import exact_config
 
-from raycaster.golden.random_world import random_basis
 from raycaster.hdl.signals import Signed
 from raycaster.rtl.common.widths import exact_slope_bits
 from raycaster.rtl.exact.slope_component import slope_component
+from raycaster.verif.random_world import random_basis
 
 
 def test_slope_component(leaf_of, random):

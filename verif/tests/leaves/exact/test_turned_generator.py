@@ -4,8 +4,8 @@
 import numpy as np
 from vectors import basis_inputs, designs, exact_config, slope_inputs
 
-from raycaster.golden.random_world import random_basis
 from raycaster.rtl.exact.turned_generator import turned_generator
+from raycaster.verif.random_world import random_basis
 
 
 @designs(*(exact_config(turn=True, units=n, screen=screen) for n, screen in ((4, "vga"), (5, "vga"), (2, "tiny"))))

@@ -6,11 +6,11 @@ from scene_vectors import CYCLES, random_bus, sized
 from vectors import basis_inputs, by_axis, named
 
 from raycaster.configuration import WORLD_SIZE
-from raycaster.golden.random_world import EXTREMES
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.scene.camera_mem import camera_mem
 from raycaster.scene import UNTURNED
 from raycaster.sim.register_model import AXES, CameraWords
+from raycaster.verif.random_world import EXTREMES
 
 
 @pytest.mark.parametrize("light", [False, True], ids=["no light", "light"])

@@ -11,7 +11,7 @@ from vectors import Bench, by
 from raycaster.fixed import FixedRectangle, varying_bits
 from raycaster.rtl.common.widths import index_bits
 from raycaster.rtl.scene.rect_rom import rect_rom
-from raycaster.tools import run_yosys
+from raycaster.runs.tools import run_yosys
 from raycaster.verif.seeds import repeat
 
 FIELDS = [field.name for field in dataclasses.fields(FixedRectangle)]

@@ -11,7 +11,6 @@ from vectors import by_axis, designs, slope_inputs, unit_config
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden import seed_engine
 from raycaster.golden.engines import model_of
-from raycaster.golden.random_world import EXTREMES, random_camera, random_looks, random_rectangles, random_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.hdl.signals import bit, unconnected
 from raycaster.rtl.common.interfaces import Slope
@@ -19,6 +18,7 @@ from raycaster.rtl.common.records import Origin, Ray
 from raycaster.rtl.common.widths import position_bits
 from raycaster.rtl.seed.intersection_finder import intersection_finder
 from raycaster.verif.expected import trace_cycles
+from raycaster.verif.random_world import EXTREMES, random_camera, random_looks, random_rectangles, random_slopes
 
 SLOPES = (0, 1, 2, 99, 100, 160, 190, 255, 256, 510, 511)
 

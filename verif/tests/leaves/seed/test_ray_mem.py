@@ -4,10 +4,10 @@
 import pytest
 from vectors import by_axis, unit_config
 
-from raycaster.golden.random_world import EXTREMES
 from raycaster.rtl.common.records import Origin, Ray
 from raycaster.rtl.common.widths import AXIS_BITS, position_bits
 from raycaster.rtl.seed.ray_mem import ray_mem
+from raycaster.verif.random_world import EXTREMES
 
 
 @pytest.mark.parametrize(

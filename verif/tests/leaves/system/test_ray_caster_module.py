@@ -19,7 +19,6 @@ from vectors import AXES, designs
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.engines import model_of
-from raycaster.golden.random_world import random_basis
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.hdl.leaf import Leaf
@@ -32,6 +31,7 @@ from raycaster.scene import UNTURNED, Basis
 from raycaster.screens import Span
 from raycaster.sim.register_model import RegisterFile, Request
 from raycaster.verif.random_scenes import rectangle_of
+from raycaster.verif.random_world import random_basis
 
 LONG_BLANKING = replace(SMALL_SCREEN, horizontal=Span(32, 8, 24, 44, active_high=False))
 """A screen with enough blanking for a beam engine whose camera can turn to set up a line."""

