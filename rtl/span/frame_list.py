@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: MIT
+"""Everything between the units and the monitor: two lists of runs, each a whole frame."""
+
+from myhdl import always_comb, block, instances
+
+from raycaster.hdl.signals import bit, bits_for, side_by_side, tied, unconnected, unsigned
+from raycaster.rtl.span.frame_switch import frame_switch
+from raycaster.rtl.span.list_player import list_player
+from raycaster.rtl.span.lists import ListEntry
+from raycaster.rtl.span.row_collector import row_collector
+from raycaster.rtl.span.row_dealer import row_dealer
+from raycaster.rtl.span.run_queue import run_queue
+
+
+@block
+def frame_list(
+    clk, reset, scan, run, take_scene, stop, first_row, next_row, start, done, valid, runs, ready, events, shown,
+    columns: int, rows: int, entries: int, units: int = 1, pixels: int = 1, queue: int = 0,
+):  # fmt: skip
+    """Let units draw each frame into one of two lists, and show the other.
+
+    A single unit writes into the list itself. Several have a queue each, and start a row only if there is room for all
+    its runs, so they never wait for ready.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        scan: `Scan`, as in `list_player`.
+        run: flag of the live `Picture`; read in the cycle after take_scene.
+        take_scene: output strobe; the pending scene goes live.
+        stop: output flag; the units must be reset, as their frame is abandoned.
+        first_row: output strobe, as in `row_slope`; in the second cycle after take_scene.
+        next_row: output strobe, as in `row_slope`.
+        start: unsigned output, a bit for each unit; strobe, the unit draws the present row.
+        done: unsigned, a bit for each unit; strobe, after the row's last run has been taken.
+        valid: unsigned, a bit for each unit; its run is there.
+        runs: unsigned; a `ListEntry` of each unit, side by side, that of unit 0 in the lowest bits.
+        ready: unsigned output, a bit for each unit; its run is taken if valid.
+        events: `FrameEvents`; output.
+        shown: unsigned output; the pixels of a clock, as in `list_player`.
+        columns: columns of a row.
+        rows: rows of a frame.
+        entries: entries of a list, an even number.
+        units: number of units.
+        pixels: pixels per clock, 1 or 2.
+        queue: runs that a unit's queue holds, at least columns; not used with one unit.
+    """
+    pixel_bits = len(shown) // pixels
+    place_width = bits_for(2 * entries + 1)
+
+    new_frame, whole, full, upper, shown_run, write, dropped = (bit() for _ in range(7))
+    offered, take = bit(), bit()
+    first, place = unsigned(place_width), unsigned(place_width)
+    turn = unsigned(bits_for(units)) if units > 1 else unconnected(1)
+    head, entry = ListEntry(columns, pixel_bits), ListEntry(columns, pixel_bits)
+    room = unsigned(units) if units > 1 else tied(1, 1)
+
+    switch = frame_switch(
+        clk, reset, start_screen=scan.start_screen, run=run, whole=whole, full=full, take_scene=take_scene,
+        new_frame=new_frame, stop=stop, upper=upper, shown_run=shown_run, events=events,
+    )  # fmt: skip
+    dealer = row_dealer(
+        clk, reset=dropped, new_frame=new_frame, room=room, done=done, first_row=first_row, next_row=next_row,
+        start=start, rows=rows, units=units,
+    )  # fmt: skip
+    collector = row_collector(
+        clk, reset=dropped, new_frame=new_frame, first=first, offered=offered, head=head, take=take, turn=turn,
+        write=write, place=place, entry=entry, whole=whole, full=full, columns=columns, rows=rows, units=units,
+        entries=entries,
+    )  # fmt: skip
+    player = list_player(
+        clk, reset, scan=scan, upper=upper, shown_run=shown_run, write=write, write_place=place, written=entry,
+        shown=shown, pixels=pixels, entries=entries,
+    )  # fmt: skip
+
+    @always_comb
+    def drop():
+        dropped.next = reset or stop
+
+    @always_comb
+    def find_first():
+        first.next = 0
+        if upper:
+            first.next = entries
+
+    if units == 1:
+
+        @always_comb
+        def connect():
+            offered.next = valid[0]
+            head.word.next = runs
+            ready.next = 0
+            ready.next[0] = take
+
+    else:
+        queued = [ListEntry(columns, pixel_bits).cut(runs, i) for i in range(units)]
+        heads = [ListEntry(columns, pixel_bits) for _ in range(units)]
+        head_words = [one.word for one in heads]
+        waits, rooms, readies = ([bit() for _ in range(units)] for _ in range(3))
+        takes = unsigned(units)
+        waiting = side_by_side(waits)
+        all_room, all_ready = side_by_side(rooms), side_by_side(readies)
+        queues = [
+            run_queue(
+                clk, reset=dropped, valid=valid(i), run=queued[i], take=takes(i), ready=readies[i], room=rooms[i],
+                offered=waits[i], head=heads[i], columns=columns, places=queue,
+            )
+            for i in range(units)
+        ]  # fmt: skip
+
+        @always_comb
+        def collect():
+            offered.next = waiting[turn]
+            head.word.next = head_words[turn]
+
+        @always_comb
+        def take_from():
+            takes.next = 0
+            if take:
+                takes.next[turn] = True
+
+        @always_comb
+        def connect():
+            room.next = all_room
+            ready.next = all_ready
+
+    return instances()

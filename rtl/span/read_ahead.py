@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""Reading of consecutive runs ahead of their use, as a block RAM takes its time."""
+
+from myhdl import always, always_comb, block, concat, instances
+
+from raycaster.hdl.signals import bit, bits_for, unsigned
+
+SLOTS = 4
+"""Runs that are read ahead: one per cycle from the fetch of a run to the fetch that takes its slot again."""
+
+
+@block
+def read_ahead(clk, restart, first, more, shown, take, fetch, read_place, offered, head, places: int):
+    """Read the runs of consecutive places from a `run_memory`, and offer them in order, one per cycle.
+
+    Args:
+        clk: the clock.
+        restart: strobe; drops all runs that have been read, and goes on at first. Needed before the first run, which
+            is offered from the fourth cycle after it on.
+        first: unsigned, below places; read with restart.
+        more: flag; a run is at read_place. Only then it is fetched.
+        shown: `ListEntry`; the run that was at read_place two cycles ago.
+        take: strobe; head is replaced by the next run. Only while offered.
+        fetch: output strobe; a run is fetched, and will be offered.
+        read_place: unsigned, like first; output register. It follows each fetch by one place; place 0 follows the last.
+        offered: output flag; head is a run.
+        head: `ListEntry`; output, valid while offered and constant until take or restart.
+        places: number of places.
+    """
+    last = places - 1
+
+    slots = [unsigned(len(shown.word)) for _ in range(SLOTS)]
+    put_slot, head_slot = (unsigned(bits_for(SLOTS)) for _ in range(2))
+    taken_slots, filled_slots = (unsigned(bits_for(SLOTS + 1)) for _ in range(2))
+    on_the_way = unsigned(2)
+    arrives = bit()
+
+    @always_comb
+    def ask():
+        fetch.next = more and (taken_slots != SLOTS) and not restart
+
+    @always(clk.posedge)
+    def advance():
+        if restart:
+            read_place.next = first
+        elif fetch:
+            if read_place == last:
+                read_place.next = 0
+            else:
+                read_place.next = read_place + 1
+
+    # A run reaches its slot at the end of the second cycle after its fetch.
+    @always(clk.posedge)
+    def travel():
+        if restart:
+            on_the_way.next = 0
+        else:
+            on_the_way.next = concat(on_the_way[0], fetch)
+
+    @always_comb
+    def arrive():
+        arrives.next = on_the_way[1]
+
+    # taken_slots counts runs from their fetch to their take, filled_slots from their arrival.
+    @always(clk.posedge)
+    def count():
+        if restart:
+            taken_slots.next = 0
+            filled_slots.next = 0
+        else:
+            if fetch and not take:
+                taken_slots.next = taken_slots + 1
+            elif take and not fetch:
+                taken_slots.next = taken_slots - 1
+            if arrives and not take:
+                filled_slots.next = filled_slots + 1
+            elif take and not arrives:
+                filled_slots.next = filled_slots - 1
+
+    @always(clk.posedge)
+    def fill():
+        if arrives:
+            slots[put_slot].next = shown.word
+
+    @always(clk.posedge)
+    def circle():
+        if restart:
+            put_slot.next = 0
+            head_slot.next = 0
+        else:
+            if arrives:
+                put_slot.next = (put_slot + 1) % SLOTS
+            if take:
+                head_slot.next = (head_slot + 1) % SLOTS
+
+    @always_comb
+    def offer():
+        offered.next = filled_slots != 0
+        head.word.next = slots[head_slot]
+
+    return instances()

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: MIT
+"""The place in the list of the line that the monitor shows."""
+
+from myhdl import always_comb, always_seq, block, instances
+
+from raycaster.hdl.signals import bit, unsigned
+
+
+@block
+def row_place(clk, reset, scan, first, shown_run, taken, restart, place, playing):
+    """Follow the shown list: each row begins where the row above ended, and each line of a row at the row's first run.
+
+    After the last row its lines go on until StartScreen; they are in blanking.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        scan: `Scan`; next_column is not read.
+        first: unsigned, `entry_bits` bits; number of the first entry of the list in view. It changes, like shown_run,
+            only in the cycle after scan.start_screen.
+        shown_run: flag; the list in view has a frame.
+        taken: unsigned, 2 bits; entries that end in this cycle, 0 while the line is not visible.
+        restart: output strobe, before each line of a row: in the second cycle after scan.start_row or after the end of
+            a line's visible part.
+        place: unsigned output, like first; number of the present entry. With restart, of the line's first.
+        playing: output flag; there is a row to show.
+    """
+    limit = 1 << len(place)
+
+    was_visible, screen_starts, row_starts, line_ends = (bit() for _ in range(4))
+    row_first, next_first = unsigned(len(place)), unsigned(len(place))
+
+    @always_seq(clk.posedge, reset=reset)
+    def remember():
+        was_visible.next = scan.visible_line
+        screen_starts.next = scan.start_screen
+        row_starts.next = scan.start_row
+
+    @always_comb
+    def find_end():
+        line_ends.next = was_visible and not scan.visible_line
+
+    # The end of a line comes before row_starts, if not in an earlier line.
+    @always_seq(clk.posedge, reset=reset)
+    def follow():
+        restart.next = False
+        if screen_starts:
+            playing.next = False
+            next_first.next = first
+        elif row_starts:
+            playing.next = shown_run
+            restart.next = shown_run
+            row_first.next = next_first
+            place.next = next_first
+        elif line_ends:
+            restart.next = playing
+            place.next = row_first
+            if playing:
+                next_first.next = place
+        else:
+            place.next = (place + taken) % limit
+
+    return instances()
