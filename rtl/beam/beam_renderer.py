@@ -36,8 +36,7 @@ def beam_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
     last_repeat = screen.doubling - 1
     cycles_limit = (1 << CYCLE_BITS) - 1
 
-    scan, pixel, shown = Scan(), shown_of(config), shown_of(config)
-    scan.start_screen = progress.start_screen
+    scan, pixel, shown = Scan(start_screen=progress.start_screen), shown_of(config), shown_of(config)
     start_line, hs_before = bit(), bit()
     first_row, first_line, in_picture, drawing = bit(), bit(), bit(), bit()
     row = unsigned(row_bits(config))

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import side_by_side, tied, unconnected
+from raycaster.hdl.signals import bit, side_by_side, tied, unconnected, unsigned
 from raycaster.rtl.common.interfaces import GroupFate, RayFate, Steps
 from raycaster.rtl.common.records import Pixel, rect_of, surface_of
 from raycaster.rtl.common.widths import unit_bits
@@ -38,7 +38,8 @@ def ray_caster(
         control: the engine's block that operates all units.
         unit: the engine's block of one unit.
     """
-    steps = Steps()
+    # With a mirrored eye, all rays are traced alike.
+    steps = Steps(initial_ray=bit() if config.facts.divides else unconnected(1))
     offered = rect_of(config) if config.facts.divides else surface_of(config)
     unit_pixels = [Pixel(config.colour_bits) for _ in range(config.units)]
     fates = [RayFate() for _ in range(config.units)]
@@ -46,17 +47,14 @@ def ray_caster(
     alive = side_by_side([fate.alive for fate in fates])
     towards = side_by_side([fate.towards for fate in fates])
     in_question = side_by_side([fate.in_question for fate in fates])
-    if not config.facts.divides:
-        steps.initial_ray = unconnected(1)  # with a mirrored eye, all rays are traced alike
-    fate = GroupFate(config)
     # The prediction requires that only the slope's y component changes with the column.
     predicts = config.culling and not config.turn
-    if not predicts:
-        fate.may_hit = tied((1 << config.rectangles) - 1, fate.may_hit)
-    if not ends_early(config):
-        fate.any_towards = tied(1, fate.any_towards)
-    if not (config.culling or config.materials):
-        fate.any_alive = tied(1, fate.any_alive)
+    fate = GroupFate(
+        config,
+        any_towards=None if ends_early(config) else tied(1, 1),
+        any_alive=None if config.culling or config.materials else tied(1, 1),
+        may_hit=None if predicts else tied((1 << config.rectangles) - 1, unsigned(config.rectangles)),
+    )
 
     operator = control(
         clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, picture=picture, rects=rects, steps=steps, fate=fate,

@@ -4,11 +4,11 @@
 The text for each attribute becomes the comment above that port in Verilog.
 """
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.records import Interface
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import bit, signed, unconnected, unsigned
 from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.common.widths import (
     CYCLE_BITS,
@@ -21,6 +21,15 @@ from raycaster.rtl.common.widths import (
     offset_bits,
     row_bits,
 )
+
+
+class Group(Interface):
+    """An interface whose signals may be given by name, to share them or to tie them; None makes a new one."""
+
+    def __init__(self, **given: Any):
+        if unknown := given.keys() - vars(self).keys():
+            raise TypeError(f"{type(self).__name__} has no {', '.join(sorted(unknown))}")
+        vars(self).update({name: signal for name, signal in given.items() if signal is not None})
 
 
 class Vga(Interface):
@@ -49,7 +58,7 @@ def vga_of(config: Configuration) -> Vga:
     return Vga(config.colour_bits * config.pixels)
 
 
-class AvalonPort(Interface):
+class AvalonPort(Group):
     """An Avalon-MM port with word addresses, 32-bit data and pipelined reads, for a host or an agent.
 
     Attributes:
@@ -63,12 +72,13 @@ class AvalonPort(Interface):
         waitrequest: the request of this cycle is not accepted yet.
     """
 
-    def __init__(self, address_bits: int):
+    def __init__(self, address_bits: int, **given: Any):
         self.address = unsigned(address_bits)
         self.read, self.write = bit(), bit()
         self.writedata, self.byteenable = unsigned(WORD_BITS), unsigned(LANES)
         self.readdata = unsigned(WORD_BITS)
         self.readdatavalid, self.waitrequest = bit(), bit()
+        super().__init__(**given)
 
 
 class BusPort(Interface):
@@ -80,7 +90,7 @@ class BusPort(Interface):
     outputs: ClassVar[tuple[str, ...]]
 
 
-class Picture(Interface):
+class Picture(Group):
     """Live settings other than rectangles and camera: they change only in the cycle after start_screen.
 
     Attributes:
@@ -89,10 +99,11 @@ class Picture(Interface):
         background: colour of the background, 24 bits.
     """
 
-    def __init__(self):
+    def __init__(self, **given: Any):
         self.run = bit()
         self.reflections = unsigned(REFLECTION_BITS)
         self.background = unsigned(RGB_BITS)
+        super().__init__(**given)
 
 
 class Progress(Interface):
@@ -111,7 +122,7 @@ class Progress(Interface):
         self.row_cycles, self.group_cycles = unsigned(CYCLE_BITS), unsigned(CYCLE_BITS)
 
 
-class Scan(Interface):
+class Scan(Group):
     """Scan position of the monitor; `video_generator` defines the timing.
 
     Attributes:
@@ -121,8 +132,9 @@ class Scan(Interface):
         next_column: strobe before each column.
     """
 
-    def __init__(self):
+    def __init__(self, **given: Any):
         self.start_screen, self.start_row, self.visible_line, self.next_column = (bit() for _ in range(4))
+        super().__init__(**given)
 
 
 class Place(Interface):
@@ -151,7 +163,7 @@ class Slope(Interface):
         self.dx, self.dy, self.dz = (unsigned(bits) for _ in range(3))
 
 
-class Direction(Interface):
+class Direction(Group):
     """A slope, or an increment of one, in two's complement.
 
     Attributes:
@@ -160,15 +172,16 @@ class Direction(Interface):
         z: component along z.
     """
 
-    def __init__(self, bits: int):
+    def __init__(self, bits: int, **given: Any):
         self.x, self.y, self.z = (signed(bits) for _ in range(3))
+        super().__init__(**given)
 
 
 AIM_CYCLES = 4
 """Cycles from the end of a pass to the start of the shadow pass: the shadow ray, a component per cycle."""
 
 
-class Steps(Interface):
+class Steps(Group):
     """Control signals that operate all ray units in lockstep: strobes, unless stated otherwise.
 
     Attributes:
@@ -186,15 +199,16 @@ class Steps(Interface):
         write_shadow: set the shadow flag if the tested rectangle shades the hit point.
     """
 
-    def __init__(self):
+    def __init__(self, **given: Any):
         self.screen_to_ray, self.initial_ray, self.find_intersection = (bit() for _ in range(3))
         self.load_divider, self.store_quotient, self.reset_z_buf, self.write_z_buf = (bit() for _ in range(4))
         self.reset_colour, self.add_colour, self.store_ray = (bit() for _ in range(3))
         self.aim = unsigned(AIM_CYCLES)
         self.write_shadow = bit()
+        super().__init__(**given)
 
 
-class ShadowPass(Interface):
+class ShadowPass(Group):
     """Signals between the ray sequencer and the `shadow_sequencer`, which adds a shadow pass after each pass of rays.
 
     Attributes:
@@ -205,8 +219,9 @@ class ShadowPass(Interface):
         stop: strobe; the remaining tests of the shadow pass cannot change a pixel.
     """
 
-    def __init__(self):
+    def __init__(self, **given: Any):
         self.traced, self.awaited, self.comes_next, self.start, self.stop = (bit() for _ in range(5))
+        super().__init__(**given)
 
 
 class RayFate(Interface):
@@ -224,7 +239,7 @@ class RayFate(Interface):
         self.towards, self.alive, self.in_question = bit(), bit(), bit()
 
 
-class GroupFate(Interface):
+class GroupFate(Group):
     """Possible further hits of any ray of a group.
 
     Attributes:
@@ -234,9 +249,10 @@ class GroupFate(Interface):
         may_hit: one bit per rectangle, 1 if a primary ray may hit it.
     """
 
-    def __init__(self, config: Configuration):
+    def __init__(self, config: Configuration, **given: Any):
         self.any_towards, self.any_alive, self.any_in_question = bit(), bit(), bit()
         self.may_hit = unsigned(config.rectangles)
+        super().__init__(**given)
 
 
 class Eye(Interface):
@@ -265,13 +281,15 @@ class SceneBus(Interface):
         mask: bits of the word to write.
     """
 
-    def __init__(self, address_bits: int):
+    def __init__(self, address_bits: int, is_read: bool = True):
         self.write, self.commit, self.go_live = bit(), bit(), bit()
         self.address = unsigned(address_bits)
         self.data, self.mask = unsigned(WORD_BITS), unsigned(WORD_BITS)
+        if not is_read:
+            vars(self).update({name: unconnected(signal) for name, signal in vars(self).items()})
 
 
-class Rects(Interface):
+class Rects(Group):
     """Read port for a live rectangle: sorted, the engine's rect_latency cycles after fetch, held until the next fetch.
 
     Attributes:
@@ -281,11 +299,12 @@ class Rects(Interface):
         rect: the fetched rectangle.
     """
 
-    def __init__(self, config: Configuration):
+    def __init__(self, config: Configuration, **given: Any):
         self.usable = unsigned(config.rectangles)
         self.index = unsigned(index_bits(config))
         self.fetch = bit()
         self.rect = rect_of(config)
+        super().__init__(**given)
 
 
 class ProcessorBus(Interface):

@@ -4,7 +4,7 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import bit, signed, tied, unsigned
+from raycaster.hdl.signals import Signed, bit, signed, tied, unsigned
 from raycaster.rtl.common.interfaces import Direction, Place, Rects
 from raycaster.rtl.common.records import Facet, Walk, WideRect
 from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, walk_bits, wide_walk_bits
@@ -48,12 +48,12 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
     next_place = Place(config)
     first_column = unsigned(config.screen_geometry.columns.bit_length())
     column_slope, row_slope = signed(slope_bits), signed(slope_bits)
-    slope = Direction(slope_bits)
-    slope.x, slope.y, slope.z = tied(config.screen_geometry.view_distance, slope.x), column_slope, row_slope
+    slope = Direction(
+        slope_bits, x=tied(config.screen_geometry.view_distance, Signed(slope_bits)), y=column_slope, z=row_slope
+    )
     swept, all_tested, predicted = bit(), bit(), bit()
 
-    copy = Rects(config)
-    copy.usable, copy.rect = rects.usable, WideRect()
+    copy = Rects(config, usable=rects.usable, rect=WideRect())
     load, found = unsigned(rectangles), unsigned(rectangles)
     facet, growth, start = Facet(walk_bits(config), bare=True), Walk(WIDE_BITS), Walk(wide_walk_bits(config))
 

@@ -45,9 +45,8 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
     """
     in_flight = unsigned(WRITE_AT + 1 + (PATTERN_LATENCY if config.patterns else 0))
     first, second = surface_of(config), surface_of(config)
-    shadow_pass = ShadowPass()
-    if not config.fixed:
-        shadow_pass.comes_next = unconnected(1)  # a shadow pass wants the same rectangles as a reflection
+    # Unless the scene is fixed, a shadow pass wants the same rectangles as a reflection.
+    shadow_pass = ShadowPass(comes_next=None if config.fixed else unconnected(1))
     from_light = bit() if config.light else tied(0, 1)
 
     sequencer = ray_sequencer(

@@ -12,7 +12,7 @@ from raycaster.rtl.bus.buses import BRIDGES
 from raycaster.rtl.common.clock_gate import clock_gate
 from raycaster.rtl.common.interfaces import AvalonPort, Picture, Progress, Rects, SceneBus
 from raycaster.rtl.common.records import camera_of
-from raycaster.rtl.common.widths import WORD_BITS
+from raycaster.rtl.common.widths import REFLECTION_BITS, RGB_BITS, WORD_BITS
 from raycaster.rtl.engines import engine_of
 from raycaster.rtl.scene.camera_mem import camera_mem
 from raycaster.rtl.scene.rect_mem import rect_mem
@@ -37,9 +37,9 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         wb: `WishbonePort`, this block as the slave; its addresses count 32-bit words.
         s_apb: `ApbPort`, this block as the completer; its addresses count bytes.
     """
-    fixed = config.fixed
-    bus = SceneBus(address_bits(config.table))
-    picture, camera, rects, progress = Picture(), camera_of(config), Rects(config), Progress()
+    fixed, camera_fixed = config.fixed, bool(config.fixed and config.fixed.camera)
+    bus = SceneBus(address_bits(config.table), is_read=not camera_fixed)
+    camera, progress = camera_of(config), Progress()
     camera_readback, rect_readback = unsigned(WORD_BITS), unsigned(WORD_BITS)
     bad_rectangle = bit()
     resting = config.facts.line_buffered and not fixed
@@ -47,20 +47,20 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
 
     if fixed:
         rect_readback, bad_rectangle = tied(0, WORD_BITS), tied(0, 1)
-        rects.usable = tied((1 << config.rectangles) - 1, rects.usable)
+        rects = Rects(config, usable=tied((1 << config.rectangles) - 1, unsigned(config.rectangles)))
         rectangles = rect_rom(clk, rects, config)
     else:
+        rects = Rects(config)
         rectangles = rect_mem(scene_clk, reset, bus, rect_readback, bad_rectangle, rects, config)
-    if fixed and fixed.camera:
+    if camera_fixed:
         camera_readback = tied(0, WORD_BITS)
         camera.tie(fixed.camera_fields)
-        picture.background = tied(fixed.background, picture.background)
-        picture.reflections = tied(config.reflections, picture.reflections)
-        for name, signal in vars(bus).items():
-            setattr(bus, name, unconnected(signal))
+        reflections = tied(config.reflections, REFLECTION_BITS)
+        picture = Picture(reflections=reflections, background=tied(fixed.background, RGB_BITS))
     else:
-        if not config.facts.line_buffered and config.reflections == 0:
-            picture.reflections = unconnected(picture.reflections)  # without reflections it does not read their number
+        # Without reflections, a renderer that is in step with the monitor does not read their number.
+        is_read = config.facts.line_buffered or config.reflections > 0
+        picture = Picture(reflections=None if is_read else unconnected(REFLECTION_BITS))
         position = camera_mem(scene_clk, reset, bus, camera_readback, camera, config)
     if config.bus in BRIDGES:
         avs_s0, name = AvalonPort(len(bus.address)), BUSES[config.bus].port

@@ -7,6 +7,7 @@ from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unconnected
 from raycaster.registers import address_bits
 from raycaster.rtl.common.interfaces import AvalonPort
+from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.rtl.system.reset_release import reset_release
 from raycaster.rtl.system.scene_player import scene_player
@@ -28,9 +29,9 @@ def scene_system(clk, ready, buttons, vga, config: Configuration, scene: Scene):
         scene: the scene.
     """
     reset = ResetSignal(0, active=1, isasync=False)
-    bus = AvalonPort(address_bits(config.table))
-    bus.read = tied(0, bus.read)
-    bus.readdata, bus.readdatavalid = unconnected(bus.readdata), unconnected(bus.readdatavalid)
+    bus = AvalonPort(
+        address_bits(config.table), read=tied(0, 1), readdata=unconnected(WORD_BITS), readdatavalid=unconnected(1)
+    )
     irq = bit()
 
     reset_source = reset_release(clk, ready, reset)

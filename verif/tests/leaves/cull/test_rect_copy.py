@@ -16,12 +16,7 @@ def test_rect_copy(count, margin, leaf_of, random):
     config = exact_config(rectangles=count)
     latency = config.facts.rect_latency
 
-    def copy():
-        copied = Rects(config)
-        copied.rect = WideRect()
-        return copied
-
-    leaf = leaf_of(rect_copy, config, copy=copy, margin=margin)
+    leaf = leaf_of(rect_copy, config, copy=lambda: Rects(config, rect=WideRect()), margin=margin)
     written, asked = [], []
     for cycle in range(600):
         fetch, index = int(cycle < count or random.random() < 0.3), cycle if cycle < count else random.integers(count)
