@@ -22,6 +22,7 @@ def _scale(of_it: Sequence[Property]) -> str:
     """
     alone = [proof.parameters for proof in of_it if not isinstance(proof.design, Configuration)]
     narrow = [parameters["COORDINATE_BITS"] for parameters in alone if "COORDINATE_BITS" in parameters]
+    columns = [parameters["COLUMNS"] for parameters in alone if "COLUMNS" in parameters]
     tables = [len(FIXED_SCENE.rect) for proof in of_it if isinstance(proof.design, TableAlone)]
     configured = [(proof, proof.design) for proof in of_it if isinstance(proof.design, Configuration)]
     counts = [
@@ -31,9 +32,10 @@ def _scale(of_it: Sequence[Property]) -> str:
     ]
     mirrors = [design.reflections for proof, design in configured if {"REFLECTIONS", "MIRRORS"} & {*proof.parameters}]
     mirrors += [parameters["MIRRORS"] for parameters in alone if "MIRRORS" in parameters]
-    full = not narrow and not tables and (not counts or max(counts) >= configure().rectangles)
+    full = not narrow and not columns and not tables and (not counts or max(counts) >= configure().rectangles)
     sizes = [] if narrow or not full else ["full width"]
-    for numbers, unit in ((narrow, "bits"), (tables + counts, "rectangles"), (mirrors, "reflections")):
+    counted = {"bits": narrow, "columns": columns, "rectangles": tables + counts, "reflections": mirrors}
+    for unit, numbers in counted.items():
         sizes += [f"{_values(numbers)} {unit}"] if numbers else []
     sizes += ["bounded waits"] if any("MOST_WAIT" in proof.parameters for proof in of_it) else []
     return ", ".join(sizes)

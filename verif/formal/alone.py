@@ -40,6 +40,9 @@ from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.rtl.scene.written_rect import CORNER, surface_mask
+from raycaster.rtl.span.frame_list import frame_list
+from raycaster.rtl.span.lists import FrameEvents, ListEntry
+from raycaster.rtl.span.run_queue import run_queue
 from raycaster.rtl.video.video_generator import video_generator
 from raycaster.scene import Camera, Rectangle, Scene
 from raycaster.screens import Screen, Span
@@ -153,6 +156,51 @@ class BridgeAlone(Alone):
         bridge = BRIDGES[self.bus]
         ports = {BUSES[self.bus].port: bridge.interface(self.address)}
         yield bridge.block(bit(), reset_signal(), avm_m0=agent, **ports)
+
+
+@dataclass(frozen=True)
+class QueueAlone(Alone):
+    """`run_queue` for rows of a few columns."""
+
+    columns: int
+    places: int
+
+    def facts(self) -> dict[str, int]:
+        """Return the width of a run."""
+        return {"RUN_BITS": len(ListEntry(self.columns, 1).word)}
+
+    def blocks(self) -> Iterator[Any]:
+        """Elaborate the queue."""
+        yield run_queue(
+            bit(), bit(), valid=bit(), run=ListEntry(self.columns, 1), take=bit(), ready=bit(), room=bit(),
+            offered=bit(), head=ListEntry(self.columns, 1), columns=self.columns, places=self.places,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class ListAlone(Alone):
+    """`frame_list` for a picture of a few rows and columns, with pixels of one bit."""
+
+    units: int
+    rows: int
+    columns: int
+    entries: int
+    pixels: int
+
+    def facts(self) -> dict[str, int]:
+        """Return the width of a run."""
+        return {"RUN_BITS": len(ListEntry(self.columns, 1).word)}
+
+    def blocks(self) -> Iterator[Any]:
+        """Elaborate the lists."""
+        units, width = self.units, self.facts()["RUN_BITS"]
+        yield frame_list(
+            bit(), reset_signal(), scan=Scan(), run=bit(), take_scene=bit(), stop=bit(), first_row=bit(),
+            next_row=bit(), start=unsigned(units), done=unsigned(units), valid=unsigned(units),
+            runs=unsigned(units * width), ready=unsigned(units), events=FrameEvents(), shown=unsigned(self.pixels),
+            columns=self.columns, rows=self.rows, entries=self.entries, units=units, pixels=self.pixels,
+            queue=self.columns,
+        )  # fmt: skip
 
 
 FIXED_SCENE = Scene(

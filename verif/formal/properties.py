@@ -46,7 +46,16 @@ from raycaster.rtl.common.records import camera_of, candidate_of, look_fields, m
 from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
 from raycaster.rtl.engines import ENGINES, SEED, engine_of
 from raycaster.screens import Screen
-from raycaster.verif.formal.alone import Alone, BridgeAlone, FoldAlone, TableAlone, TesterAlone, VideoAlone
+from raycaster.verif.formal.alone import (
+    Alone,
+    BridgeAlone,
+    FoldAlone,
+    ListAlone,
+    QueueAlone,
+    TableAlone,
+    TesterAlone,
+    VideoAlone,
+)
 from raycaster.verif.formal.prover import Property
 from raycaster.verif.formal.wrapper import constants, source
 
@@ -56,7 +65,7 @@ ORDER = (
     "contest-products", "shares-exact", "group-safe", "tester-exact", "tester-products", "nearest-products",
     "eye-exact", "cell-products", "shadow-products", "shadow-wiring", "unit-wiring", "slope-exact", "blend-exact",
     "row-setup", "line-start", "walked-products", "turned-walks", "fold-exact", "fold-products",
-    "beam-tester-products", "fixed-rects", "divider-exact",
+    "beam-tester-products", "fixed-rects", "divider-exact", "run-order", "whole-frames",
 )  # fmt: skip
 """Names of the properties, in the order of tables. The file of each has underscores for dashes."""
 
@@ -88,6 +97,8 @@ ALONE: dict[str, Callable[[Facts], Alone]] = {
     "fold": lambda facts: FoldAlone(
         facts["COORDINATE_BITS"], facts["SLOPE_BITS"], facts["MIRRORS"], staged=not facts["VIEW_DISTANCE"]
     ),
+    "queue": lambda facts: QueueAlone(facts["COLUMNS"], facts["PLACES"]),
+    "list": lambda facts: ListAlone(facts["UNITS"], facts["ROWS"], facts["COLUMNS"], facts["ENTRIES"], facts["PIXELS"]),
     "table": lambda facts: TableAlone(facts.config.engine, bool(facts["ALIKE"])),
 }
 """Blocks that are converted alone, by the word in a header."""
