@@ -144,6 +144,71 @@ def row_bits(config: Configuration) -> int:
     return bits_for(config.screen_geometry.rows + 1)
 
 
+def column_bits(config: Configuration) -> int:
+    """Width of a column of the whole screen, or of the column after a run: 0 up to the number of columns."""
+    return bits_for(config.screen_geometry.columns + 1)
+
+
+def span_slope_bits(config: Configuration) -> int:
+    """Width of a component of a slope of the screen, with sign."""
+    return exact_slope_bits(config) + 1
+
+
+def furthest(config: Configuration) -> int:
+    """Return the largest factor of a slope in a half-line: a distance from an eye, or of an edge of its last cell.
+
+    A mirrored eye is at most 511 (r + 1) from any coordinate of the world, and a pattern's last edge is at 512.
+    """
+    return (WORLD_SIZE - 1) * (config.reflections + 1) + config.patterns
+
+
+def line_factor_bits(config: Configuration) -> int:
+    """Width of a factor of a slope in a half-line, with sign."""
+    return furthest(config).bit_length() + 1
+
+
+def step_bits(config: Configuration) -> int:
+    """Width of the change of a slope's component from column to column, with sign; -1, 0 or 1 unless it turns."""
+    return BASIS_BITS if config.turn else 2
+
+
+def line_bits(config: Configuration) -> int:
+    """Width of A X - B Y - 1, with sign, for two factors and two components of a slope.
+
+    A slope from the light is up to 511 times as steep, but its factors are distances within the world.
+    """
+    greatest = 2 * furthest(config) * steepest_slope(config)
+    if config.light:
+        greatest = max(greatest, 2 * (WORLD_SIZE - 1) ** 2 * steepest_slope(config))
+    return (greatest + 1).bit_length() + 1
+
+
+def line_growth_bits(config: Configuration) -> int:
+    """Width of the change of A X - B Y from column to column, with sign, for two components of the screen's slope."""
+    return (2 * furthest(config) << (step_bits(config) - 1)).bit_length() + 1
+
+
+def divisor_bits(config: Configuration) -> int:
+    """Width of a divisor of `first_change`, with sign: a line's change per column, or the slope at a pattern's cell.
+
+    A line that belongs to the light has components of its slope that change like other lines.
+    """
+    growth = line_growth_bits(config)
+    if config.light:
+        growth += (2 * (WORLD_SIZE - 1)).bit_length()
+    return max(growth, span_slope_bits(config)) if config.patterns else growth
+
+
+def level_bits(config: Configuration) -> int:
+    """Width of the number of mirrors that a ray has met."""
+    return bits_for(config.reflections + 1)
+
+
+def weight_bits(config: Configuration) -> int:
+    """Width of a ray's weight in its pixel, in units of 4 ** -reflections."""
+    return 2 * config.reflections + 1
+
+
 def index_bits(config: Configuration) -> int:
     """Width of the number of a rectangle."""
     return bits_for(config.rectangles)

@@ -56,7 +56,7 @@ MAY_IMPORT_IN_RTL = {
     "seed": ("common", "engine", "buffered"),
     "exact": ("common", "engine", "buffered"),
     "beam": ("common", "engine", "video"),
-    "span": ("common",),
+    "span": ("common", "engine"),
     "engines.py": ("engine", "seed", "exact", "beam"),
     "system": ("common", "dvi", "scene", "bus", "engines.py"),
 }

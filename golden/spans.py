@@ -1,0 +1,415 @@
+# SPDX-License-Identifier: MIT
+"""The unit of the span engine, row by row: its runs of columns of one colour, its steps, and its cycles.
+
+Along a row the slope of the rays is linear in the column, D(c) = D0 + c G. So is everything that decides what a ray
+sees, after any mirrors (the eye is mirrored instead of the ray, Heckbert and Hanrahan 1984), and the columns that see a
+rectangle through a chain of mirrors are an interval. Its ends are columns at which a line changes its sign: one integer
+division each. Nothing is rounded, and the work hardly depends on the number of columns. Spans of a row are as old as
+Watkins (1970); Underflow Cubed (Tiny Tapeout, 2026) calls its own Ray Interval Tracing.
+
+This model takes the steps of the hardware in its order, in Python's integers, which never overflow. It shares nothing
+with the model of the picture, `golden.exact`, with which tests compare it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.scene import UNTURNED, Basis, Light, Scene
+from raycaster.screens import Screen
+
+ANSWER = 5
+"""Cycles from a line's query to its values."""
+
+Vector = tuple[int, int, int]
+
+
+class Line(NamedTuple):
+    """A line f(c) = at_0 + c * growth over the columns of a row."""
+
+    at_0: int
+    growth: int
+
+    def at(self, column: int) -> int:
+        """Return the value at a column."""
+        return self.at_0 + column * self.growth
+
+
+def combined(a: int, x: Line, b: int, y: Line, strict: int = 0) -> Line:
+    """Return a x - b y - strict, the form of every line that the hardware evaluates."""
+    return Line(a * x.at_0 - b * y.at_0 - strict, a * x.growth - b * y.growth)
+
+
+def first_change(value: int, growth: int) -> int:
+    """Return the columns from one where a line has this value to the first at which its sign differs; there is one."""
+    return 1 + (~value if value < 0 else value) // abs(growth)
+
+
+class Rect(NamedTuple):
+    """A rectangle of the table, with a plane."""
+
+    index: int
+    axis: int
+    plane: int
+    low: Vector
+    high: Vector
+    quarters: int
+    kind: int
+    cell: int
+    colour: Vector
+    colour_2: Vector
+
+
+class Chain(NamedTuple):
+    """The mirrors that a ray has met, and the columns in which all rays have met them; see `span.records.Chain`."""
+
+    start: int
+    stop: int
+    eye: Vector
+    back: tuple[bool, bool, bool]
+    """Components of the slope that have changed their sign."""
+
+    distance: int = 0
+    """N of the last mirror, which is met at t = N / e; 0 before the first one."""
+
+    ahead: Line = Line(0, 0)
+    """e of the last mirror."""
+
+    met: frozenset[int] = frozenset()
+    """Axes of the mirrors met in the last mirror's point."""
+
+
+class Entry(NamedTuple):
+    """A rectangle that a chain's rays meet in the columns from start to stop, at t = N / e."""
+
+    rect: Rect
+    start: int
+    stop: int
+    distance: int
+    """N, more than 0."""
+
+    ahead: Line
+    """e, more than 0 in those columns."""
+
+    def follows(self, other: Entry) -> bool:
+        """Return True if an entry on the same axis is seen first."""
+        return (other.distance, other.rect.index) < (self.distance, self.rect.index)
+
+
+def order(first: Entry, second: Entry) -> Line:
+    """Return a line that is not negative where the first entry is seen before the second one."""
+    later = int(first.rect.index > second.rect.index)
+    return combined(second.distance, first.ahead, first.distance, second.ahead, later)
+
+
+@dataclass
+class Row:
+    """A row that is drawn."""
+
+    runs: list[tuple[int, Vector]] = field(default_factory=list)
+    """The column after each run, and its colour. Neighbours differ in colour."""
+
+    cycles: int = 0
+    """Clock cycles from the start, which counts, to the row's end, if each run is taken at once."""
+
+    steps: Counter = field(default_factory=Counter)
+    """Numbers of chains, rectangles that were tested, divisions, entries, passes, spans and the like."""
+
+
+@dataclass(frozen=True)
+class SpanModel:
+    """The span engine, drawing one table from one place."""
+
+    rectangles: Rectangles
+    camera: Sequence[int]
+    background: Sequence[int]
+    columns: int
+    reflections: int
+    light: Light | None = None
+
+    def __post_init__(self):
+        object.__setattr__(self, "table", tuple(_rects(self.rectangles)))
+
+    def row(self, slope: Sequence[int], step: Sequence[int]) -> Row:
+        """Draw a row.
+
+        Args:
+            slope: D0, the slope of column 0.
+            step: G, its change from column to column.
+        """
+        drawing = Drawing(self, tuple(Line(int(at_0), int(growth)) for at_0, growth in zip(slope, step, strict=True)))
+        return drawing.draw()
+
+    def rows(self, screen: Screen, basis: Basis = UNTURNED) -> Iterator[Row]:
+        """Draw all rows of a screen, from the top."""
+        for row in range(screen.rows):
+            yield self.row(*row_slope(screen, basis, row))
+
+    @classmethod
+    def of_scene(cls, scene: Scene, screen: Screen, reflections: int | None = None) -> SpanModel:
+        """Return the model for a scene, with its own reflections if none are given."""
+        return cls(
+            Rectangles.of_scene(scene), scene.camera.position, scene.background, screen.columns,
+            scene.reflections if reflections is None else reflections, scene.light,
+        )  # fmt: skip
+
+
+def row_slope(screen: Screen, basis: Basis, row: int) -> tuple[Vector, Vector]:
+    """Return the slope of a row's first column, and its change from column to column.
+
+    Args:
+        screen: grid of rays.
+        basis: forward, right and up of the camera, times 256; without a turn, a slope is not times 256.
+        row: 0 for the highest.
+    """
+    aside, above = -screen.centre_column, screen.horizon_row - row
+    if basis == UNTURNED:
+        return (screen.view_distance, aside, above), (0, 1, 0)
+    along_x, along_y, along_z = (
+        screen.view_distance * forward + aside * right + above * up for forward, right, up in zip(*basis, strict=True)
+    )
+    return (along_x, along_y, along_z), basis[1]
+
+
+def picture_of(rows: Sequence[Row], columns: int) -> np.ndarray:
+    """Return the picture that rows of runs make, uint8 (rows, columns, 3)."""
+    picture = np.zeros((len(rows), columns, 3), dtype=np.uint8)
+    for place, row in enumerate(rows):
+        start = 0
+        for end, colour in row.runs:
+            picture[place, start:end] = colour
+            start = end
+    return picture
+
+
+def _rects(table: Rectangles) -> Iterator[Rect]:
+    """Yield the rectangles that can be seen."""
+    for index in np.flatnonzero(table.visible).tolist():
+        axis, low, high = int(table.axes[index]), tuple(table.low[index].tolist()), tuple(table.high[index].tolist())
+        yield Rect(
+            index, axis, low[axis], low, high, int(table.mirrors[index]), int(table.kinds[index]),
+            int(table.cells[index]), tuple(table.colours[index].tolist()), tuple(table.colours_2[index].tolist()),
+        )  # fmt: skip
+
+
+class Drawing:
+    """A row that is being drawn; `now` is the number of the present cycle."""
+
+    def __init__(self, model: SpanModel, slope: tuple[Line, Line, Line]):
+        self.model, self.slope, self.result, self.now = model, slope, Row(), 0
+        self.division = (model.columns - 1).bit_length() + 1
+        """Cycles of a division."""
+        self.shown: list[tuple[int, Vector]] = []
+        """The weight and the colour of each level above the present one."""
+
+    def draw(self) -> Row:
+        """Draw the row."""
+        self.now += 1
+        start = Chain(0, self.model.columns, tuple(int(one) for one in self.model.camera), (False, False, False))
+        self.chain(start, 4**self.model.reflections)
+        # The last run passes two registers.
+        self.result.cycles = self.now + 2
+        return self.result
+
+    def folded(self, axis: int, back: bool) -> Line:
+        """Return a component of the slope, with its sign changed or not."""
+        line = self.slope[axis]
+        return Line(-line.at_0, -line.growth) if back else line
+
+    # -- Chains and their spans
+
+    def chain(self, chain: Chain, weight: int) -> None:
+        """Draw the columns of a chain, whose colours have this weight in the picture."""
+        self.result.steps["chains"] += 1
+        entries = self.set_up(chain)
+        winner, column = None, chain.start
+        while column < chain.stop:
+            stop, heir = self.sweep(entries, chain, column, winner)
+            if column < stop:
+                self.span(chain, column, stop, winner, weight)
+            # The chain behind a mirror ends in the cycle in which this one goes on, or ends too.
+            if stop < chain.stop:
+                self.now += 1
+            column, winner = stop, heir
+
+    def span(self, chain: Chain, column: int, stop: int, winner: Entry | None, weight: int) -> None:
+        """Draw a span, in which the winner is seen."""
+        self.result.steps["spans"] += 1
+        level = len(self.shown)
+        quarters = winner.rect.quarters if winner and level < self.model.reflections else 0
+        while column < stop:
+            self.now += 1
+            part, corner = self.corner(chain, column, stop, winner) if winner and quarters else (stop, False)
+            colour = winner.rect.colour if winner else tuple(int(channel) for channel in self.model.background)
+            self.shown.append((weight * (4 - quarters) // 4, colour))
+            self.now += 1
+            if quarters:
+                self.now += 1
+                self.chain(self.behind(chain, winner, column, part, corner), weight * quarters // 4)
+                # The frame is read, and the winner's rectangle too if there is a second part.
+                if part < self.model.columns:
+                    self.now += 1 + (part < stop)
+            else:
+                self.emit(stop)
+            self.shown.pop()
+            column = part
+
+    def corner(self, chain: Chain, column: int, stop: int, winner: Entry) -> tuple[int, bool]:
+        """Return the end of the first columns in which the winner is met in the last mirror's point, or is not."""
+        if not chain.distance or winner.rect.axis in chain.met:
+            return stop, False
+        self.result.steps["corner tests"] += 1
+        self.now += ANSWER
+        line = combined(winner.distance, chain.ahead, chain.distance, winner.ahead)
+        at_left, at_right = line.at(column) == 0, line.at(stop - 1) == 0
+        if at_left == at_right:
+            return stop, at_left
+        return (column + 1, True) if at_left else (stop - 1, False)
+
+    def behind(self, chain: Chain, winner: Entry, start: int, stop: int, corner: bool) -> Chain:
+        """Return the chain that the winner reflects in some columns."""
+        axis, plane = winner.rect.axis, winner.rect.plane
+        eye = tuple(2 * plane - one if axis == place else one for place, one in enumerate(chain.eye))
+        back = tuple(one != (axis == place) for place, one in enumerate(chain.back))
+        met = (chain.met if corner else frozenset()) | {axis}
+        return Chain(start, stop, eye, back, winner.distance, winner.ahead, met)
+
+    def emit(self, stop: int) -> None:
+        """Mix the colours of all levels, up to a column."""
+        self.result.steps["parts"] += 1
+        self.now += len(self.shown) + 2
+        sums = [sum(weight * colour[channel] for weight, colour in self.shown) for channel in range(3)]
+        mixed = tuple(one >> 2 * self.model.reflections for one in sums)
+        runs = self.result.runs
+        if runs and runs[-1][1] == mixed:
+            runs.pop()
+        runs.append((stop, mixed))
+
+    # -- The entries of a chain
+
+    def set_up(self, chain: Chain) -> list[Entry]:
+        """Return the rectangles that a chain's rays meet, each with its columns."""
+        entries = []
+        # The slope's components are asked for, one per cycle.
+        hand = self.now + 3 + ANSWER + 1
+        accepted, issued, freed = hand, hand, [0, 0]
+        for rect in self.model.table:
+            lines = self.half_lines(chain, rect)
+            if not lines:
+                hand += 1
+                continue
+            self.result.steps["rectangles"] += 1
+            # The line before has been asked, and a slot is free.
+            accepted = max(hand, issued, freed[0] + 1)
+            issued, hand = accepted + len(lines), accepted + 1
+            answered = max(issued + ANSWER + 1, freed[1] + 1)
+            start, stop, cycles = self.clip(chain, lines.values())
+            freed = [freed[1], answered + cycles]
+            if start < stop:
+                entries.append(Entry(rect, start, stop, *self.approach(chain, rect)))
+        self.now = max(hand, issued + 1 if freed[1] else 0, freed[1] + 1) + 2
+        self.result.steps["entries"] += len(entries)
+        return entries
+
+    def approach(self, chain: Chain, rect: Rect) -> tuple[int, Line]:
+        """Return N and e, with which the rays of a chain meet a rectangle's plane at t = N / e."""
+        far = rect.plane - chain.eye[rect.axis]
+        return abs(far), self.folded(rect.axis, chain.back[rect.axis] != (far < 0))
+
+    def half_lines(self, chain: Chain, rect: Rect) -> dict[int, Line]:
+        """Return the lines that are not negative where a chain's rays meet a rectangle, by their numbers.
+
+        There are none if the plane is not ahead at either end of the chain. Number 0 is only needed if the others do
+        not imply it: the rectangle is a point, or the slope may be 0 in some column.
+        """
+        distance, ahead = self.approach(chain, rect)
+        first, last = ahead.at(chain.start) > 0, ahead.at(chain.stop - 1) > 0
+        if not distance or not (first or last):
+            return {}
+        lines = {}
+        ends = [(line.at(chain.start), line.at(chain.stop - 1)) for line in self.slope]
+        vanishes = all(min(left, right) <= 0 <= max(left, right) for left, right in ends)
+        if first != last and (vanishes or all(rect.low[u] == rect.high[u] for u in OTHER_AXES[rect.axis])):
+            lines[0] = combined(1, ahead, 0, ahead, 1)
+        for place, u in enumerate(OTHER_AXES[rect.axis]):
+            aside = self.folded(u, chain.back[u])
+            lines[1 + 2 * place] = combined(distance, aside, rect.low[u] - chain.eye[u], ahead)
+            lines[2 + 2 * place] = combined(rect.high[u] - chain.eye[u], ahead, distance, aside)
+        if chain.distance:
+            lines[5] = combined(distance, chain.ahead, chain.distance, ahead, int(rect.axis in chain.met))
+        return lines
+
+    def clip(self, chain: Chain, lines: Iterable[Line]) -> tuple[int, int, int]:
+        """Return the columns in which all lines are not negative, and the cycles that it takes to find them."""
+        start, stop, cycles = chain.start, chain.stop, 0
+        ends = [(line.at(start), line.at(stop - 1), line.growth) for line in lines]
+        if any(left < 0 and right < 0 for left, right, _ in ends):
+            return start, start, 0
+        for left, right, growth in ends:
+            if (left < 0) != (right < 0) and start < stop:
+                border = chain.start + first_change(left, growth)
+                self.result.steps["divisions"] += 1
+                cycles += self.division + 1
+                if left < 0:
+                    start = max(start, border)
+                else:
+                    stop = min(stop, border)
+        return start, stop, cycles
+
+    # -- The sweep
+
+    def sweep(
+        self, entries: Sequence[Entry], chain: Chain, column: int, winner: Entry | None
+    ) -> tuple[int, Entry | None]:
+        """Return the end of the span that begins at a column, and the entry that is seen next."""
+        self.result.steps["passes"] += 1
+        self.result.steps["scanned"] += len(entries)
+        self.now += 1
+        stop, heir = winner.stop if winner else chain.stop, None
+        for entry in entries:
+            self.now += 1
+            found = self.takes(entry, winner, column, stop) if winner else self.begins(entry, column, stop)
+            if found is not None and (found < stop or heir is None or self.precedes(entry, heir, stop)):
+                stop, heir = found, entry
+        self.now += 1
+        return stop, heir
+
+    def begins(self, entry: Entry, column: int, stop: int) -> int | None:
+        """Return the column at which an entry ends a gap."""
+        return entry.start if column <= entry.start <= stop else None
+
+    def takes(self, entry: Entry, winner: Entry, column: int, stop: int) -> int | None:
+        """Return the first column up to stop at which an entry is seen instead of the winner."""
+        left = max(column, entry.start)
+        if entry is winner or left >= entry.stop or left > stop:
+            return None
+        if left >= winner.stop:
+            return stop
+        follows = stop if stop == winner.stop and stop < entry.stop else None
+        if entry.rect.axis == winner.rect.axis:
+            return follows if entry.follows(winner) else left
+        self.result.steps["orders"] += 1
+        self.now += ANSWER
+        line = order(entry, winner)
+        right = min(entry.stop - 1, stop if stop < winner.stop else stop - 1)
+        if line.at(left) >= 0:
+            return left
+        if line.at(right) >= 0:
+            self.result.steps["divisions"] += 1
+            self.now += self.division
+            return left + first_change(line.at(left), line.growth)
+        return follows
+
+    def precedes(self, entry: Entry, heir: Entry, column: int) -> bool:
+        """Return True if an entry is seen before the heir, where both follow."""
+        if entry.rect.axis == heir.rect.axis:
+            return heir.follows(entry)
+        self.result.steps["orders"] += 1
+        self.now += ANSWER
+        return order(entry, heir).at(column) >= 0

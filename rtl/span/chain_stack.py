@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: MIT
+"""The chains whose spans are being drawn in their mirrors."""
+
+from myhdl import always, always_comb, block, instances
+
+from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bits_for, unsigned
+from raycaster.rtl.common.widths import level_bits
+
+
+@block
+def chain_stack(clk, push, level, kept, frame, config: Configuration):
+    """Hold a `Frame` for each level, the number of mirrors of its chain.
+
+    Args:
+        clk: the clock.
+        push: strobe; stores kept at this level.
+        level: unsigned, `level_bits` bits; 0 to the number of reflections, less than that with push.
+        kept: `Frame`; read with push.
+        frame: output `Frame`; that of the level below, don't care at level 0. Combinational.
+        config: the design, with reflections.
+    """
+    width = bits_for(config.reflections)
+    memory = [unsigned(len(kept.word)) for _ in range(1 << width)]
+    above, below = unsigned(width), unsigned(width)
+    lower = unsigned(level_bits(config))
+
+    @always_comb
+    def descend():
+        lower.next = (level - 1) % (1 << len(lower))
+
+    @always_comb
+    def address():
+        above.next = level[width:]
+        below.next = lower[width:]
+
+    @always(clk.posedge)
+    def store():
+        if push:
+            memory[above].next = kept.word
+
+    @always_comb
+    def show():
+        frame.word.next = memory[below]
+
+    return instances()

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: MIT
+"""The entries of all chains from the camera to the present one."""
+
+from myhdl import always, always_comb, block, concat, instances
+
+from raycaster.configuration import Configuration
+from raycaster.hdl.signals import unsigned
+from raycaster.rtl.common.widths import index_bits, level_bits
+
+
+@block
+def entry_table(clk, level, append, number, entry, read, place, stored, config: Configuration):
+    """Hold a table of entries for each level, the number of mirrors of a chain.
+
+    Args:
+        clk: the clock.
+        level: unsigned, `level_bits` bits; the level that is written or read.
+        append: strobe; stores entry at number.
+        number: unsigned, `count_bits` bits; read with append.
+        entry: `Entry`; read with append.
+        read: strobe; reads the entry at place.
+        place: unsigned, `index_bits` bits; read with the strobe of that name.
+        stored: output `Entry`; valid from the cycle after read up to the next read.
+        config: the design.
+    """
+    index_width = index_bits(config)
+    leveled = config.reflections > 0
+    address_bits = index_width + (level_bits(config) if leveled else 0)
+    memory = [unsigned(len(entry.word)) for _ in range(1 << address_bits)]
+    write_address, read_address = unsigned(address_bits), unsigned(address_bits)
+
+    if leveled:
+
+        @always_comb
+        def address():
+            write_address.next = concat(level, number[index_width:])
+            read_address.next = concat(level, place)
+
+    else:
+
+        @always_comb
+        def address():
+            write_address.next = number[index_width:]
+            read_address.next = place
+
+    @always(clk.posedge)
+    def store():
+        if append:
+            memory[write_address].next = entry.word
+
+    @always(clk.posedge)
+    def fetch():
+        if read:
+            stored.word.next = memory[read_address]
+
+    return instances()

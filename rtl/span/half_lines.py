@@ -1,0 +1,363 @@
+# SPDX-License-Identifier: MIT
+"""The half-lines of all rectangles that a chain's rays may meet."""
+
+from myhdl import always, always_comb, block, instances
+
+from raycaster.configuration import COORDINATE_BITS, Configuration
+from raycaster.hdl.signals import Signed, bit, signed, tied, unsigned
+from raycaster.rtl.common.by_axis import along_a, along_u, along_v, by_axis
+from raycaster.rtl.common.magnitude import magnitude
+from raycaster.rtl.common.records import rect_of
+from raycaster.rtl.common.widths import AXIS_BITS, column_bits, eye_bits, index_bits, line_factor_bits
+from raycaster.rtl.span.records import AHEAD, BEYOND, NUMBER_BITS, U_HIGH, U_LOW, V_HIGH, V_LOW
+
+
+@block
+def half_lines(
+    clk, reset, start, chain, rects, answer, free, done, ask, query, slot, opened, entry, walked, config: Configuration
+):  # fmt: skip
+    """Ask for the half-lines of each rectangle in the table's order, except of those that the rays cannot meet.
+
+    A ray of the chain meets the rectangle's plane k on axis a at t = N / e, with n = k - E[a], N = |n|, and e the
+    slope's component on that axis with the sign of n, negated if the chain has changed that component's sign. It meets
+    the rectangle in the columns where all of these lines are not negative, with W one of the other axes, D'[W] the
+    slope's component after the mirrors, and t = M / m at the last mirror:
+
+    | number | line |
+    | --- | --- |
+    | `AHEAD` | e - 1 |
+    | `U_LOW`, `V_LOW` | N D'[W] - (low - E[W]) e |
+    | `U_HIGH`, `V_HIGH` | (high - E[W]) e - N D'[W] |
+    | `BEYOND` | N m - M e, less 1 if a mirror on that axis was met in the same point |
+
+    Without n, or with e <= 0 at both ends of the chain, there is no hit and no line. `AHEAD` is only asked where the
+    others do not imply it: e <= 0 at one end, and the rectangle is a point, or the slope may be 0 in some column.
+
+    Args:
+        clk: the clock.
+        reset: flag; synchronous reset, which ends the walk.
+        start: strobe; begins with the rectangles of this chain.
+        chain: `Chain`; constant from start to done.
+        rects: `Rects`; index and fetch are outputs. A rectangle is read up to the cycle of opened.
+        answer: `Answer`; only those without half_line are read: the slope's components at the ends of the chain.
+        free: flag; the slot is free for the next rectangle.
+        done: strobe; all lines are answered and used, so the walk is over.
+        ask: output strobe; `line_eval` must answer the query.
+        query: output `Query`; valid with ask.
+        slot: output flag; the slot of the next rectangle, or of the one that is opened: they take turns.
+        opened: output strobe; the lines of a rectangle follow.
+        entry: output `Entry`, valid with opened; start and stop are 0.
+        walked: output flag; all lines have been asked. Low before start.
+        config: the design.
+    """
+    far_bits, factor_bits, columns = eye_bits(config), line_factor_bits(config), column_bits(config)
+    count, index_width = config.rectangles, index_bits(config)
+
+    seeing, walking = bit(), bit()
+    asked_axis = unsigned(AXIS_BITS)
+    waiting, candidates, others = (unsigned(count) for _ in range(3))
+    lowest, upcoming, index = (unsigned(index_width) for _ in range(3))
+    offered, at_hand, take, fetch, moving = (bit() for _ in range(5))
+    fore_left, fore_right, aft_left, aft_right = (unsigned(3) for _ in range(4))
+    may_vanish = bit()
+
+    position, eye_a, n = signed(far_bits), signed(far_bits), signed(far_bits + 1)
+    distance = unsigned(far_bits - 1)
+    flipped, fore_left_a, fore_right_a, aft_left_a, aft_right_a = (bit() for _ in range(5))
+    point, back, ahead_left, ahead_right, skip, tested_ahead, ready, accept = (bit() for _ in range(8))
+
+    issuing, last, slot_1 = bit(), bit(), bit()
+    number = unsigned(NUMBER_BITS)
+    mirrors = config.reflections > 0
+    last_number = unsigned(NUMBER_BITS) if mirrors else tied(V_HIGH, NUMBER_BITS)
+    mirror_axis = unsigned(AXIS_BITS) if mirrors else tied(0, AXIS_BITS)
+    mirror_distance = signed(factor_bits) if mirrors else tied(0, Signed(factor_bits))
+    rect_1, entry_1 = rect_of(config), entry.twin()
+    axis_u, axis_v, axis_w, axis_1, axis_2 = (unsigned(AXIS_BITS) for _ in range(5))
+    on_u, low, met, back_w, back_1, back_2, strict, half_line = (bit() for _ in range(8))
+    bound = unsigned(COORDINATE_BITS)
+    number_asked = unsigned(NUMBER_BITS)
+    eye_w = signed(far_bits)
+    whole_bound, offset, whole_distance, factor_1, factor_2 = (signed(factor_bits) for _ in range(5))
+    no_columns = tied(0, columns)
+
+    # The slope's components at the ends of the chain come first.
+    @always(clk.posedge)
+    def see_slope():
+        if reset:
+            seeing.next = False
+            walking.next = False
+        elif start:
+            seeing.next = True
+            asked_axis.next = 0
+        else:
+            if seeing and asked_axis != 3:
+                asked_axis.next = asked_axis + 1
+            if seeing and answer.valid and answer.number == 2:
+                seeing.next = False
+                walking.next = True
+            if done:
+                walking.next = False
+
+    @always(clk.posedge)
+    def keep_signs():
+        if seeing and answer.valid:
+            for axis in range(3):
+                if answer.number == axis:
+                    fore_left.next[axis] = answer.left > 0
+                    fore_right.next[axis] = answer.right > 0
+                    aft_left.next[axis] = answer.left < 0
+                    aft_right.next[axis] = answer.right < 0
+
+    # Where the slope is 0, each component is 0 or changes its sign within the chain.
+    @always_comb
+    def see_vanishing():
+        may_vanish.next = ((fore_left & fore_right) | (aft_left & aft_right)) == 0
+
+    @always_comb
+    def choose_candidates():
+        candidates.next = waiting
+        if start:
+            candidates.next = rects.usable
+
+    @always_comb
+    def choose_rectangle():
+        lowest.next = 0
+        others.next = candidates
+        for i in range(count - 1, -1, -1):
+            if candidates[i]:
+                lowest.next = i
+                others.next = candidates
+                others.next[i] = 0
+
+    @always_comb
+    def see_fetch():
+        fetch.next = offered and (seeing or walking) and (take or not at_hand)
+
+    @always_comb
+    def show_fetch():
+        moving.next = start or fetch
+        rects.index.next = upcoming
+        rects.fetch.next = fetch
+
+    @always(clk.posedge)
+    def offer():
+        if reset:
+            offered.next = False
+        elif moving:
+            offered.next = candidates != 0
+            upcoming.next = lowest
+            waiting.next = others
+
+    @always(clk.posedge)
+    def follow_fetch():
+        if fetch:
+            index.next = upcoming
+        if reset or start:
+            at_hand.next = False
+        elif fetch:
+            at_hand.next = True
+        elif take:
+            at_hand.next = False
+
+    choices = [
+        by_axis(rects.rect.axis, *values, chosen, width=len(chosen))
+        for values, chosen in (
+            ((chain.eye_x, chain.eye_y, chain.eye_z), eye_a), ((chain.back_x, chain.back_y, chain.back_z), flipped),
+            ((fore_left(0), fore_left(1), fore_left(2)), fore_left_a),
+            ((fore_right(0), fore_right(1), fore_right(2)), fore_right_a),
+            ((aft_left(0), aft_left(1), aft_left(2)), aft_left_a),
+            ((aft_right(0), aft_right(1), aft_right(2)), aft_right_a),
+        )
+    ]  # fmt: skip
+
+    @always_comb
+    def extend():
+        position.next = rects.rect.position
+
+    @always_comb
+    def measure():
+        n.next = position - eye_a
+
+    size = magnitude(n, distance)
+
+    @always_comb
+    def turn():
+        back.next = flipped != (n < 0)
+
+    @always_comb
+    def see_ends():
+        ahead_left.next = fore_left_a
+        ahead_right.next = fore_right_a
+        if back:
+            ahead_left.next = aft_left_a
+            ahead_right.next = aft_right_a
+
+    @always_comb
+    def see_point():
+        point.next = (rects.rect.u_low == rects.rect.u_high) and (rects.rect.v_low == rects.rect.v_high)
+
+    @always_comb
+    def judge():
+        skip.next = (n == 0) or not (ahead_left or ahead_right)
+        tested_ahead.next = (ahead_left != ahead_right) and (point or may_vanish)
+        ready.next = free and ((not issuing) or last)
+
+    @always_comb
+    def decide():
+        take.next = walking and at_hand and (skip or ready)
+        accept.next = walking and at_hand and ready and not skip
+
+    met_rectangle = entry.joined(
+        index=index, axis=rects.rect.axis, back=back, distance=distance, start=no_columns, stop=no_columns
+    )
+
+    @always_comb
+    def announce():
+        opened.next = accept
+        entry.word.next = met_rectangle
+
+    @always(clk.posedge)
+    def issue():
+        if reset:
+            issuing.next = False
+            slot.next = False
+        elif accept:
+            issuing.next = True
+            slot.next = not slot
+        elif last:
+            issuing.next = False
+        if accept:
+            number.next = U_LOW
+            if tested_ahead:
+                number.next = AHEAD
+        elif issuing:
+            number.next = (number + 1) % (1 << NUMBER_BITS)
+
+    @always(clk.posedge)
+    def hold():
+        if accept:
+            rect_1.word.next = rects.rect.word
+            entry_1.word.next = entry.word
+            slot_1.next = slot
+
+    @always_comb
+    def see_end():
+        walked.next = walking and not (offered or at_hand or issuing)
+
+    # The lines of the rectangle that is held.
+    @always_comb
+    def choose_extent():
+        low.next = False
+        on_u.next = False
+        if number == U_LOW:
+            low.next = True
+            on_u.next = True
+        elif number == U_HIGH:
+            on_u.next = True
+        elif number == V_LOW:
+            low.next = True
+        last.next = issuing and (number == last_number)
+
+    @always_comb
+    def choose_bound():
+        bound.next = rect_1.v_high
+        if number == U_LOW:
+            bound.next = rect_1.u_low
+        elif number == U_HIGH:
+            bound.next = rect_1.u_high
+        elif number == V_LOW:
+            bound.next = rect_1.v_low
+
+    axes = [tied(axis, AXIS_BITS) for axis in range(3)]
+    lines = [
+        by_axis(axis, *values, chosen, width=len(chosen))
+        for axis, values, chosen in (
+            (entry_1.axis, along_u(*axes), axis_u), (entry_1.axis, along_v(*axes), axis_v),
+            (axis_w, (chain.eye_x, chain.eye_y, chain.eye_z), eye_w),
+            (axis_w, (chain.back_x, chain.back_y, chain.back_z), back_w),
+            (entry_1.axis, along_a(chain.met_x, chain.met_y, chain.met_z), met),
+        )
+    ]  # fmt: skip
+
+    @always_comb
+    def choose_axis():
+        axis_w.next = axis_v
+        if on_u:
+            axis_w.next = axis_u
+
+    @always_comb
+    def extend_bound():
+        whole_bound.next = bound
+        whole_distance.next = entry_1.distance
+
+    @always_comb
+    def measure_bound():
+        offset.next = whole_bound - eye_w
+
+    if mirrors:
+
+        @always_comb
+        def see_mirror():
+            mirror_axis.next = chain.axis
+            mirror_distance.next = chain.distance
+            last_number.next = V_HIGH
+            if chain.mirrored:
+                last_number.next = BEYOND
+
+    @always_comb
+    def choose_line():
+        half_line.next = True
+        number_asked.next = number
+        strict.next = False
+        axis_1.next = axis_w
+        back_1.next = back_w
+        factor_1.next = whole_distance
+        axis_2.next = entry_1.axis
+        back_2.next = entry_1.back
+        factor_2.next = offset
+        if seeing:
+            half_line.next = False
+            number_asked.next = asked_axis
+            axis_1.next = asked_axis
+            back_1.next = False
+            factor_1.next = 1
+            axis_2.next = asked_axis
+            back_2.next = False
+            factor_2.next = 0
+        elif number == AHEAD:
+            axis_1.next = entry_1.axis
+            back_1.next = entry_1.back
+            factor_1.next = 1
+            factor_2.next = 0
+            strict.next = True
+        elif number == BEYOND:
+            axis_1.next = mirror_axis
+            back_1.next = chain.back
+            factor_2.next = mirror_distance
+            strict.next = met
+        elif not low:
+            axis_1.next = entry_1.axis
+            back_1.next = entry_1.back
+            factor_1.next = offset
+            axis_2.next = axis_w
+            back_2.next = back_w
+            factor_2.next = whole_distance
+
+    right = unsigned(columns)
+
+    @always_comb
+    def see_last_column():
+        right.next = (chain.stop - 1) % (1 << columns)
+
+    asked = query.joined(
+        left=chain.start, right=right, strict=strict, axis_1=axis_1, back_1=back_1, factor_1=factor_1, axis_2=axis_2,
+        back_2=back_2, factor_2=factor_2, half_line=half_line, last=last, slot=slot_1, number=number_asked,
+    )  # fmt: skip
+
+    @always_comb
+    def query_line():
+        ask.next = issuing or (seeing and asked_axis != 3)
+        query.word.next = asked
+
+    return instances()

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: MIT
+"""A component of the slope at two columns."""
+
+from myhdl import always, always_comb, block, instances
+
+from raycaster.configuration import Configuration
+from raycaster.hdl.signals import signed
+from raycaster.rtl.common.by_axis import by_axis
+from raycaster.rtl.common.widths import column_bits, span_slope_bits, step_bits
+
+
+@block
+def operand_ends(clk, axis, left, right, slope, step, at_left, at_right, growth, config: Configuration):
+    """Compute D[axis](c) = slope[axis] + c step[axis] at two columns, three cycles later.
+
+    Args:
+        clk: the clock.
+        axis: unsigned, 2 bits; 0, 1, 2 for x, y, z.
+        left: unsigned, `column_bits` bits.
+        right: unsigned, `column_bits` bits.
+        slope: `Direction` of `span_slope_bits` bits; the slope of column 0, constant while anything is computed.
+        step: `Direction` of `step_bits` bits; the slope's change from column to column, constant like slope. Only read
+            with `config.turn`; otherwise it is (0, 1, 0).
+        at_left: signed output, `span_slope_bits` bits; the component at the column left.
+        at_right: signed output, `span_slope_bits` bits; the component at the column right.
+        growth: signed output, `step_bits` bits; its change from column to column.
+        config: the design.
+    """
+    slope_bits, growth_bits, columns = span_slope_bits(config), step_bits(config), column_bits(config)
+    # A column beyond the last, where all is don't care, may exceed the steepest slope.
+    bits = max(slope_bits, columns + growth_bits) + 1
+
+    start, start_1, start_2 = (signed(slope_bits) for _ in range(3))
+    move, step_1, step_2 = (signed(growth_bits) for _ in range(3))
+    left_1, right_1 = signed(columns + 1), signed(columns + 1)
+    to_left, to_right, to_left_2, to_right_2 = (signed(columns + growth_bits + 1) for _ in range(4))
+    whole_left, whole_right = signed(bits + 1), signed(bits + 1)
+
+    # A number at the end of a name is the stage whose registers hold it.
+    begin = by_axis(axis, slope.x, slope.y, slope.z, start, width=slope_bits)
+
+    if config.turn:
+        change = by_axis(axis, step.x, step.y, step.z, move, width=growth_bits)
+    else:
+
+        @always_comb
+        def see_change():
+            move.next = 0
+            if axis == 1:
+                move.next = 1
+
+    @always(clk.posedge)
+    def stage_1():
+        start_1.next = start
+        step_1.next = move
+        left_1.next = left
+        right_1.next = right
+
+    if config.turn:
+
+        @always_comb
+        def multiply():
+            to_left.next = left_1 * step_1
+            to_right.next = right_1 * step_1
+
+    else:
+
+        @always_comb
+        def multiply():
+            to_left.next = 0
+            to_right.next = 0
+            if step_1 != 0:
+                to_left.next = left_1
+                to_right.next = right_1
+
+    @always(clk.posedge)
+    def stage_2():
+        start_2.next = start_1
+        step_2.next = step_1
+        to_left_2.next = to_left
+        to_right_2.next = to_right
+
+    @always_comb
+    def add():
+        whole_left.next = start_2 + to_left_2
+        whole_right.next = start_2 + to_right_2
+
+    @always(clk.posedge)
+    def stage_3():
+        at_left.next = whole_left[slope_bits:].signed()
+        at_right.next = whole_right[slope_bits:].signed()
+        growth.next = step_2
+
+    return instances()

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""Records and groups of signals of the span engine."""
+
+from raycaster.configuration import Configuration
+from raycaster.hdl.records import Interface, Record
+from raycaster.hdl.signals import Signed, bit, signed, unsigned
+from raycaster.rtl.common.widths import (
+    AXIS_BITS,
+    RGB_BITS,
+    column_bits,
+    divisor_bits,
+    eye_bits,
+    index_bits,
+    line_bits,
+    line_factor_bits,
+    weight_bits,
+)
+
+AHEAD, U_LOW, U_HIGH, V_LOW, V_HIGH, BEYOND = range(6)
+"""Numbers of a rectangle's half-lines: ahead of the eye, within its four bounds, and beyond the last mirror."""
+
+NUMBER_BITS = 3
+
+
+class Chain(Record):
+    """The mirrors that a ray has met, and the columns in which all rays have met them.
+
+    start, stop: the columns, half-open; eye_x ...: the camera mirrored in all of them; back_x ...: the slope's
+    component has changed its sign. With reflections: mirrored: there is a last mirror; axis, back, distance: it is met
+    at t = distance / e, with e the slope's component on that axis, negated if back; met_x ...: axes of the mirrors
+    met in that point; weight: of the next colour, in units of 4 ** -reflections of the picture.
+    """
+
+    def __init__(self, config: Configuration):
+        columns, some = column_bits(config), int(config.reflections > 0)
+        super().__init__(
+            {"start": columns, "stop": columns}
+            | dict.fromkeys(("eye_x", "eye_y", "eye_z"), Signed(eye_bits(config)))
+            | dict.fromkeys(("back_x", "back_y", "back_z", "mirrored"), some)
+            | {"axis": AXIS_BITS * some, "back": some, "distance": (eye_bits(config) - 1) * some}
+            | dict.fromkeys(("met_x", "met_y", "met_z"), some)
+            | {"weight": weight_bits(config) * some}
+        )
+
+
+class Entry(Record):
+    """A rectangle that a chain's rays meet in the columns from start up to, and without, stop.
+
+    They meet it at t = distance / e, with e > 0 the slope's component on the rectangle's axis, negated if back.
+    """
+
+    def __init__(self, config: Configuration):
+        columns = column_bits(config)
+        super().__init__(
+            {"index": index_bits(config), "axis": AXIS_BITS, "back": 1, "distance": eye_bits(config) - 1}
+            | {"start": columns, "stop": columns}
+        )
+
+
+class Frame(Record):
+    """What a chain leaves behind for the time after the chains of its span: the chain, and the place of its sweep.
+
+    part_stop: the end of the part of the span that is being drawn; stop: the span's end; heir, inherited: the entry
+    that is seen next, and whether there is one; count: number of the chain's entries.
+    """
+
+    def __init__(self, config: Configuration):
+        entry, columns = len(Entry(config).word), column_bits(config)
+        super().__init__(
+            {"chain": len(Chain(config).word), "winner": entry, "heir": entry, "inherited": 1}
+            | {"part_stop": columns, "stop": columns, "count": count_bits(config)}
+        )
+
+
+class Paint(Record):
+    """A colour that a ray sees, and its share in the picture, in units of 4 ** -reflections."""
+
+    def __init__(self, config: Configuration):
+        super().__init__({"share": weight_bits(config), "colour": RGB_BITS})
+
+
+def count_bits(config: Configuration) -> int:
+    """Width of a number of entries, from none to all rectangles."""
+    return config.rectangles.bit_length()
+
+
+class Query(Record):
+    """A line f(c) = factor_1 X(c) - factor_2 Y(c) - strict for `line_eval`, asked at the columns left and right.
+
+    X and Y are the components of the slope on axis_1 and axis_2, negated if back_1 and back_2. half_line, last, slot,
+    number: returned with the answer. half_line: it belongs to a rectangle's set-up, in that slot; last: the rectangle
+    has no more.
+    """
+
+    def __init__(self, config: Configuration):
+        columns, factor = column_bits(config), Signed(line_factor_bits(config))
+        super().__init__(
+            {"left": columns, "right": columns, "strict": 1}
+            | {"axis_1": AXIS_BITS, "back_1": 1, "factor_1": factor}
+            | {"axis_2": AXIS_BITS, "back_2": 1, "factor_2": factor}
+            | {"half_line": 1, "last": 1, "slot": 1, "number": NUMBER_BITS}
+        )
+
+
+class Answer(Interface):
+    """The values of a line at two columns, `LATENCY` cycles after its query.
+
+    Attributes:
+        valid: a query's answer is here.
+        half_line: as in the `Query`.
+        last: as in the `Query`.
+        slot: as in the `Query`.
+        number: as in the `Query`.
+        left: f at the left column.
+        right: f at the right column.
+        growth: the change of f from column to column.
+    """
+
+    def __init__(self, config: Configuration):
+        self.valid, self.half_line, self.last, self.slot = bit(), bit(), bit(), bit()
+        self.number = unsigned(NUMBER_BITS)
+        self.left, self.right = signed(line_bits(config)), signed(line_bits(config))
+        self.growth = signed(divisor_bits(config))
+
+
+class Division(Record):
+    """The line whose sign changes, for `first_change`: its value at a column, and its change per column."""
+
+    def __init__(self, config: Configuration):
+        super().__init__({"value": Signed(line_bits(config)), "growth": Signed(divisor_bits(config))})

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: MIT
+"""The joining of neighbouring runs of one colour."""
+
+from myhdl import always, always_comb, block, instances
+
+from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit, unsigned
+from raycaster.rtl.common.widths import RGB_BITS, column_bits
+
+
+@block
+def run_joiner(clk, reset, part, run, done, config: Configuration):
+    """Join neighbouring runs of one colour. The last run of a row ends at the number of columns.
+
+    Args:
+        clk: the clock.
+        reset: flag; synchronous reset, which forgets all runs.
+        part: `Run`; ready is an output, which waits for a run of another colour to leave.
+        run: output `Run`; ready is an input.
+        done: output strobe; the last run of the row was taken in the cycle before.
+        config: the design.
+    """
+    columns, width = config.screen_geometry.columns, column_bits(config)
+
+    held, last, same, vacant, leaves, taken = (bit() for _ in range(6))
+    held_end, colour = unsigned(width), unsigned(RGB_BITS)
+
+    @always_comb
+    def compare():
+        same.next = part.colour == colour
+        last.next = held and (held_end == columns)
+        vacant.next = run.ready or not run.valid
+
+    # A held run leaves once it cannot become longer.
+    @always_comb
+    def see_leaving():
+        leaves.next = held and vacant and (last or (part.valid and not same))
+
+    @always_comb
+    def accept():
+        part.ready.next = (not last) and ((not held) or same or vacant)
+
+    @always_comb
+    def see_taken():
+        taken.next = part.valid and part.ready
+
+    @always(clk.posedge)
+    def hold():
+        if reset:
+            held.next = False
+        elif taken:
+            held.next = True
+        elif leaves:
+            held.next = False
+        if taken:
+            held_end.next = part.end
+            colour.next = part.colour
+
+    @always(clk.posedge)
+    def offer():
+        if reset:
+            run.valid.next = False
+        elif leaves:
+            run.valid.next = True
+        elif run.ready:
+            run.valid.next = False
+        if leaves:
+            run.end.next = held_end
+            run.colour.next = colour
+
+    @always(clk.posedge)
+    def finish():
+        done.next = run.valid and run.ready and (run.end == columns) and not reset
+
+    return instances()

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""A component of the slope of the first column of row after row, for a camera that turns."""
+
+from myhdl import always, always_comb, block, instances
+
+from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit, signed
+
+
+@block
+def slope_start(clk, first_row, next_row, forward, right, up, component, config: Configuration):
+    """Compute view distance * forward - centre column * right + (horizon row - row) * up, row after row.
+
+    Args:
+        clk: the clock.
+        first_row: strobe; the rows begin again with row 0.
+        next_row: strobe; the row below. Not in the cycle after first_row, nor with it.
+        forward: signed, 10 bits; constant from the cycle before first_row on, like right and up.
+        right: signed, 10 bits.
+        up: signed, 10 bits.
+        component: signed output; valid from the second cycle after first_row, and from the cycle after next_row.
+        config: the design.
+    """
+    screen = config.screen_geometry
+    view_distance, centre_column, horizon_row = screen.view_distance, screen.centre_column, screen.horizon_row
+    # One row past the last is legal.
+    bits = len(component) + 2
+
+    ahead, aside, above, ahead_1, aside_1, above_1 = (signed(bits) for _ in range(6))
+    whole, below = signed(bits), signed(bits)
+    begins = bit()
+
+    @always_comb
+    def multiply():
+        ahead.next = forward * view_distance
+        aside.next = right * centre_column
+        above.next = up * horizon_row
+
+    @always(clk.posedge)
+    def keep_products():
+        begins.next = first_row
+        ahead_1.next = ahead
+        aside_1.next = aside
+        above_1.next = above
+
+    @always_comb
+    def add():
+        whole.next = ahead_1 - aside_1 + above_1
+
+    @always_comb
+    def go_down():
+        below.next = component - up
+
+    @always(clk.posedge)
+    def step():
+        if begins:
+            component.next = whole[len(component) :].signed()
+        elif next_row:
+            component.next = below[len(component) :].signed()
+
+    return instances()

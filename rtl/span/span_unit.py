@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: MIT
+"""A unit of the span engine: it draws a row as runs of columns of one colour."""
+
+from myhdl import always, always_comb, block, instances
+
+from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit, tied, unconnected, unsigned
+from raycaster.rtl.common.interfaces import Direction, Rects, Run
+from raycaster.rtl.common.widths import (
+    RGB_BITS,
+    column_bits,
+    index_bits,
+    level_bits,
+    span_slope_bits,
+    step_bits,
+    weight_bits,
+)
+from raycaster.rtl.span.chain_stack import chain_stack
+from raycaster.rtl.span.corner_finder import corner_finder
+from raycaster.rtl.span.entry_table import entry_table
+from raycaster.rtl.span.first_change import first_change
+from raycaster.rtl.span.fold import fold
+from raycaster.rtl.span.line_eval import line_eval
+from raycaster.rtl.span.painter import painter
+from raycaster.rtl.span.records import Answer, Chain, Division, Entry, Frame, Query, count_bits
+from raycaster.rtl.span.run_joiner import run_joiner
+from raycaster.rtl.span.set_up import set_up
+from raycaster.rtl.span.span_control import span_control
+from raycaster.rtl.span.sweep import sweep
+
+
+@block
+def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, config: Configuration):
+    """Draw a row as runs of columns of one colour, from left to right, to the last bit as the image contract has it.
+
+    Along a row the slope of the rays is linear in the column, so all decisions are signs of lines, and the columns in
+    which they change. The work depends on what is seen in the row, and hardly on the number of columns (Watkins 1970).
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high; ends the row.
+        start: strobe; draws a row. Only after reset, and from the cycle of done on.
+        slope: `Direction` of `span_slope_bits` bits; the slope of column 0 of that row, read with start.
+        rects: `Rects`; index and fetch are outputs. All others are constant from start to done.
+        camera: `Camera`; constant from start to done. If it turns, only right of its basis is read.
+        picture: `Picture`; reflections and background are read, constant from start to done.
+        run: output `Run`; ready is an input. Neighbouring runs differ in colour, and the last one of the row ends at
+            the number of columns.
+        done: output strobe, in the cycle after that in which the last run was taken.
+        config: the design.
+    """
+    width, mirrors = column_bits(config), config.reflections > 0
+
+    first_slope, step, answer = Direction(span_slope_bits(config)), Direction(step_bits(config)), Answer(config)
+    chain, winner, heir, swept_heir, entry, tested = Chain(config), *(Entry(config) for _ in range(5))
+    ask, set_up_ask, sweep_ask = (bit() for _ in range(3))
+    query, set_up_query, sweep_query = (Query(config) for _ in range(3))
+    divide, set_up_divide, sweep_divide, divided = (bit() for _ in range(4))
+    division, set_up_division, sweep_division = (Division(config) for _ in range(3))
+    column, columns, stop, swept_stop = (unsigned(width) for _ in range(4))
+    begin_set_up, begin_sweep, begin_paint, begin_emit, fetch = (bit() for _ in range(5))
+    set_up_done, sweep_done, emitted, painted = (bit() for _ in range(4))
+    gap, inherited, swept_inherited, append, read = (bit() for _ in range(5))
+    level, place = unsigned(level_bits(config)), unsigned(index_bits(config))
+    entry_count, count = unsigned(count_bits(config)), unsigned(count_bits(config))
+    share = unsigned(weight_bits(config)) if mirrors else tied(1, weight_bits(config))
+    colour = unsigned(RGB_BITS)
+    walk, part = Rects(config), Run(config)
+    walk.usable, walk.rect = rects.usable, rects.rect
+
+    if mirrors:
+        folded, kept, frame, corner_query = Chain(config), Frame(config), Frame(config), Query(config)
+        begin_corner, cornered, corner, corner_done, corner_ask, push = (bit() for _ in range(6))
+        part_stop, passed_on = unsigned(width), unsigned(weight_bits(config))
+        behind = (
+            corner_finder(
+                clk=clk, reset=reset, start=begin_corner, chain=chain, winner=winner, column=column, stop=stop,
+                answer=answer, ask=corner_ask, query=corner_query, needed=cornered, corner=corner, part_stop=part_stop,
+                done=corner_done, config=config,
+            ),
+            fold(
+                chain=chain, winner=winner, column=column, stop=part_stop, corner=corner, weight=passed_on,
+                folded=folded, config=config,
+            ),
+            chain_stack(clk=clk, push=push, level=level, kept=kept, frame=frame, config=config),
+        )  # fmt: skip
+        now = kept.joined(
+            chain=chain.word,
+            winner=winner.word,
+            heir=heir.word,
+            inherited=inherited,
+            part_stop=part_stop,
+            stop=stop,
+            count=count,
+        )
+
+        @always_comb
+        def keep_frame():
+            kept.word.next = now
+
+    else:
+        folded, frame, corner_query = Chain(config).tie({}), Frame(config).tie({}), Query(config).tie({})
+        cornered, corner_done, corner_ask = (tied(0, 1) for _ in range(3))
+        begin_corner, push, passed_on = unconnected(1), unconnected(1), unconnected(1)
+
+    control = span_control(
+        clk=clk, reset=reset, start=start, camera=camera, picture=picture, rect=rects.rect, set_up_done=set_up_done,
+        entry_count=entry_count, sweep_done=sweep_done, swept_stop=swept_stop, swept_inherited=swept_inherited,
+        swept_heir=swept_heir, cornered=cornered, corner_done=corner_done, folded=folded, frame=frame,
+        painted=painted, emitted=emitted, begin_set_up=begin_set_up, begin_sweep=begin_sweep,
+        begin_corner=begin_corner, begin_paint=begin_paint, begin_emit=begin_emit, push=push, fetch=fetch,
+        level=level, chain=chain, winner=winner, gap=gap, column=column, stop=stop, heir=heir, inherited=inherited,
+        count=count, share=share, colour=colour, passed_on=passed_on, config=config,
+    )  # fmt: skip
+    finder = set_up(
+        clk=clk, reset=reset, start=begin_set_up, chain=chain, rects=walk, answer=answer, divided=divided,
+        columns=columns, ask=set_up_ask, query=set_up_query, divide=set_up_divide, division=set_up_division,
+        append=append, entry=entry, count=entry_count, done=set_up_done, config=config,
+    )  # fmt: skip
+    table = entry_table(
+        clk=clk, level=level, append=append, number=entry_count, entry=entry, read=read, place=place, stored=tested,
+        config=config,
+    )  # fmt: skip
+    sweeper = sweep(
+        clk=clk, reset=reset, start=begin_sweep, gap=gap, column=column, chain_stop=chain.stop, winner=winner,
+        count=count, tested=tested, answer=answer, divided=divided, columns=columns, read=read, place=place,
+        ask=sweep_ask, query=sweep_query, divide=sweep_divide, division=sweep_division, stop=swept_stop,
+        inherited=swept_inherited, heir=swept_heir, done=sweep_done, config=config,
+    )  # fmt: skip
+    evaluator = line_eval(
+        clk=clk, reset=reset, ask=ask, query=query, slope=first_slope, step=step, answer=answer, config=config
+    )
+    divider = first_change(
+        clk=clk, reset=reset, start=divide, division=division, columns=columns, done=divided, config=config
+    )
+    mixer = painter(
+        clk=clk, reset=reset, paint=begin_paint, level=level, share=share, colour=colour, emit=begin_emit, stop=stop,
+        picture=picture, run=part, painted=painted, emitted=emitted, config=config,
+    )  # fmt: skip
+    joiner = run_joiner(clk=clk, reset=reset, part=part, run=run, done=done, config=config)
+
+    @always(clk.posedge)
+    def keep_slope():
+        if start:
+            first_slope.x.next = slope.x
+            first_slope.y.next = slope.y
+            first_slope.z.next = slope.z
+
+    if config.turn:
+
+        @always_comb
+        def see_step():
+            step.x.next = camera.right_x
+            step.y.next = camera.right_y
+            step.z.next = camera.right_z
+
+    # One of them works at a time.
+    @always_comb
+    def choose_rectangle():
+        rects.fetch.next = walk.fetch or fetch
+        rects.index.next = walk.index
+        if fetch:
+            rects.index.next = winner.index
+
+    @always_comb
+    def choose_query():
+        ask.next = set_up_ask or sweep_ask or corner_ask
+        query.word.next = set_up_query.word
+        if sweep_ask:
+            query.word.next = sweep_query.word
+        elif corner_ask:
+            query.word.next = corner_query.word
+
+    @always_comb
+    def choose_division():
+        divide.next = set_up_divide or sweep_divide
+        division.word.next = set_up_division.word
+        if sweep_divide:
+            division.word.next = sweep_division.word
+
+    return instances()

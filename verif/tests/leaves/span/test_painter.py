@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `painter` and `run_joiner`: mixed colours, and runs that wait, join and end."""
+
+from __future__ import annotations
+
+import pytest
+from span_vectors import span_config
+from vectors import by
+
+from raycaster.rtl.common.interfaces import Run
+from raycaster.rtl.common.widths import RGB_BITS, column_bits, level_bits, weight_bits
+from raycaster.rtl.span.painter import painter
+from raycaster.rtl.span.run_joiner import run_joiner
+
+
+@by(reflections=[0, 1, 4])
+def test_painter(reflections, leaf_of, random):
+    config = span_config(screen="tiny", rectangles=4, reflections=reflections)
+    ports = {"level": level_bits(config), "share": weight_bits(config), "colour": RGB_BITS, "stop": column_bits(config)}
+    leaf = leaf_of(painter, config, run=lambda: Run(config), **ports)
+    leaf.case({"reset": 1, "paint": 0, "emit": 0})
+    for _ in range(leaf.some(150)):
+        fewer = int(random.integers(reflections + 1))
+        level, left, shares = int(random.integers(fewer + 1)), 4**fewer, []
+        for number in range(level + 1):
+            own = 4 if number == level else int(random.integers(5))
+            shares.append(left * own // 4)
+            left = left * (4 - own) // 4
+        colours = [random.choice([0, 255, *random.integers(256, size=3)], 3).tolist() for _ in shares]
+        for number, (share, colour) in enumerate(zip(shares, colours, strict=True)):
+            word = int.from_bytes(bytes(colour))
+            paint = {"reset": 0, "paint": 1, "level": number, "share": share, "colour": word}
+            leaf.case(paint | {"picture_reflections": fewer}, {"painted": 1, "run_valid": 0})
+        stop = int(random.integers(1, 65))
+        leaf.case({"paint": 0, "emit": 1, "stop": stop})
+        leaf.stimulus += [{"emit": 0}] * (level + 1)
+        leaf.expect({"run_valid": 0})
+        mixed = bytes(
+            sum(share * colour[channel] for share, colour in zip(shares, colours, strict=True)) // 4**fewer
+            for channel in range(3)
+        )
+        wanted = {"run_valid": 1, "run_end": stop, "run_colour": int.from_bytes(mixed)}
+        for _ in range(int(random.integers(3))):
+            leaf.case({"run_ready": 0}, wanted | {"emitted": 0})
+        leaf.case({"run_ready": 1}, wanted | {"emitted": 1})
+        leaf.case({"run_ready": 0}, {"run_valid": 0})
+    leaf.check(spare=True)
+
+
+@pytest.mark.parametrize("patience", [0, 0.3, 0.8])
+def test_run_joiner(patience, leaf_of, random):
+    """Runs of few colours; each side waits at times, and nothing that waits changes."""
+    config = span_config(screen="tiny")
+    leaf = leaf_of(run_joiner, config, part=lambda: Run(config), run=lambda: Run(config))
+    leaf.case({"reset": 1, "part_valid": 0})
+    rows = []
+    for _ in range(12):
+        ends = sorted({*random.integers(1, 64, int(random.integers(20))).tolist(), 64})
+        rows.append([(end, int(random.integers(1, 4))) for end in ends])
+    parts = [part for row in rows for part in row]
+    # A model of both registers says when each part is taken.
+    held = shown = None
+    place, done, joined, offer, taken = 0, 0, [], False, False
+    while place < len(parts) or held or shown or done:
+        ready = int(random.random() >= patience)
+        offer = place < len(parts) and ((offer and not taken) or random.random() >= patience)
+        part = parts[place] if offer else (0, 0)
+        last = held is not None and held[0] == 64
+        vacant = ready or shown is None
+        same = held is not None and held[1] == part[1]
+        leaves = held is not None and vacant and (last or (offer and not same))
+        taken = offer and not last and (held is None or same or vacant)
+        leaf.case(
+            {"reset": 0, "part_valid": int(offer), "part_end": part[0], "part_colour": part[1], "run_ready": ready},
+            {"run_valid": int(shown is not None), "done": done},
+        )
+        leaf.expect({"part_ready": int(taken)}, when=offer)
+        if shown:
+            leaf.expect({"run_end": shown[0], "run_colour": shown[1]})
+        done = int(shown is not None and ready and shown[0] == 64)
+        if shown is not None and ready:
+            joined.append(shown)
+            shown = None
+        if leaves:
+            shown, held = held, None
+        if taken:
+            held, place = part, place + 1
+    wanted = []
+    for row in rows:
+        merged = []
+        for end, colour in row:
+            if merged and merged[-1][1] == colour:
+                merged.pop()
+            merged.append((end, colour))
+        wanted += merged
+    assert joined == wanted, "the model is wrong"
+    leaf.check()

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `span_unit` and `span_control`: whole tiny frames, each row in as many cycles as the model says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import pytest
+from conftest import plant
+from span_vectors import Frame, any_frame, frame_bench, frame_inputs, scene_frame, span_config
+from vectors import config_id
+
+from raycaster.configuration import Configuration
+from raycaster.golden.picture import describe_difference
+from raycaster.golden.spans import Row, picture_of
+from raycaster.rtl.common.interfaces import Run
+from raycaster.rtl.common.records import rect_of
+from raycaster.rtl.common.widths import index_bits
+from raycaster.scene import load_scene, packaged_scenes
+
+TINY = {"screen": "tiny", "rectangles": 12}
+
+DESIGNS = [
+    span_config(**TINY, reflections=0),
+    span_config(**TINY, reflections=1),
+    span_config(**TINY | {"rectangles": 1}, reflections=2, materials=True),
+    span_config(**TINY | {"rectangles": 32}, reflections=3, materials=True),
+    span_config(**TINY, reflections=2, turn=True),
+    span_config(**TINY, reflections=4, turn=True, materials=True),
+]
+
+QUICK = 2
+"""Frames of each design, if slow tests are left out."""
+
+DRAWN = ("turn", "materials")
+"""Options of `LOOKS` that the unit has."""
+
+SCENES = {name: load_scene(path) for name, path in sorted(packaged_scenes().items())}
+SCENES = {name: scene for name, scene in SCENES.items() if not scene.lacks(DRAWN)}
+
+
+def unit_bench(leaf_of, config: Configuration):
+    """Make the bench of a unit."""
+    ports = {"number": index_bits(config), "stored": lambda: rect_of(config), "usable": config.rectangles}
+    return leaf_of(frame_bench, config, run=lambda: Run(config), **ports)
+
+
+def drawn(leaf, frames: Sequence[Frame], ready=lambda: 1) -> Iterator[list[Row]]:
+    """Simulate frames, in Verilog with unknown values at power-up, and yield the rows of each.
+
+    Args:
+        leaf: the bench.
+        frames: frames to draw.
+        ready: returns whether a run is taken in the next cycle.
+    """
+    screen = leaf.screen
+    expected = [list(frame.model(screen).rows(screen, frame.basis)) for frame in frames]
+    begins, stimulus = [], [{"reset": 1, "first_row": 0, "store": 0, "run_ready": 1}] * 3
+    for frame, rows in zip(frames, expected, strict=True):
+        stimulus += frame_inputs(frame)
+        # The first row begins two cycles after first_row.
+        begins.append(len(stimulus))
+        patience = 4 if ready() != 1 or ready() != 1 else 1
+        stimulus += [{"run_ready": ready()} for _ in range(patience * sum(row.cycles for row in rows) + 8)]
+        stimulus += [{"reset": 1}]
+    given = [{name: int(value) for name, value in cycle.items() if name in leaf.given} for cycle in stimulus]
+    outputs = leaf.run_verilog(given, power_up=False)
+    held = {}
+    for cycle, inputs in enumerate(given):
+        held |= inputs
+        outputs[cycle]["ready"] = held["run_ready"]
+    for begin in begins:
+        rows, row, start = [], Row(), begin
+        for cycle in range(begin, len(outputs)):
+            seen = outputs[cycle]
+            assert None not in (seen["done"], seen["run_valid"]), f"cycle {cycle}: unknown"
+            if seen["done"] and len(rows) < screen.rows:
+                row.cycles, start = cycle - start, cycle
+                rows.append(row)
+                row = Row()
+            if seen["run_valid"] and seen["ready"] and len(rows) < screen.rows:
+                assert None not in (seen["run_end"], seen["run_colour"]), f"cycle {cycle}: unknown"
+                row.runs.append((seen["run_end"], tuple(seen["run_colour"].to_bytes(3))))
+        yield rows
+
+
+def check_frames(leaf, frames: Sequence[Frame]) -> int:
+    """Compare frames with the picture of the golden model and rows with the span model; return the number of rows."""
+    count, screen = 0, leaf.screen
+    for frame, rows in zip(frames, drawn(leaf, frames), strict=True):
+        wanted = list(frame.model(screen).rows(screen, frame.basis))
+        for number, (row, expected) in enumerate(zip(rows, wanted, strict=False)):
+            assert (row.runs, row.cycles) == (expected.runs, expected.cycles), f"row {number}"
+            assert all(one != other for (_, one), (_, other) in pairwise(row.runs))
+        assert len(rows) == len(wanted)
+        assert not describe_difference(picture_of(rows, screen.columns), frame.picture(screen))
+        count += len(rows)
+    return count
+
+
+@pytest.mark.parametrize("config", DESIGNS, ids=config_id)
+def test_span_unit(config, leaf_of, random):
+    """Random, cornered and stiff worlds."""
+    leaf = unit_bench(leaf_of, config)
+    leaf.screen = config.screen_geometry
+    check_frames(leaf, [any_frame(random, config) for _ in range(QUICK if leaf.few else 8)])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SCENES)
+def test_packaged_scenes(name, leaf_of):
+    scene = SCENES[name]
+    looks = {look: True for look in DRAWN if scene.lacks({*DRAWN} - {look})}
+    config = span_config(screen="tiny", rectangles=max(12, len(scene.rect)), reflections=scene.reflections, **looks)
+    leaf = unit_bench(leaf_of, config)
+    leaf.screen = config.screen_geometry
+    check_frames(leaf, [scene_frame(scene)])
+
+
+def test_runs_wait(leaf_of, random):
+    """A list that is not always ready gets the same runs."""
+    config = DESIGNS[1]
+    leaf = unit_bench(leaf_of, config)
+    leaf.screen = config.screen_geometry
+    frames = [any_frame(random, config)]
+    for frame, rows in zip(frames, drawn(leaf, frames, lambda: int(random.random() < 0.3)), strict=True):
+        wanted = frame.model(leaf.screen).rows(leaf.screen, frame.basis)
+        assert [row.runs for row in rows] == [row.runs for row in wanted]
+
+
+FAULTS = [
+    ("clipper", "(answer_left < 0) != (answer_right < 0)", "(answer_left <= 0) != (answer_right <= 0)"),
+    ("clipper", "border > start", "border < start"),
+    ("half_lines", "strict = met", "strict = 0"),
+    ("sweep", "left <= stop", "left < stop"),
+    ("sweep", "follows = (stop == winner_stop) && (stop < tested_stop)", "follows = 0"),
+    ("sweep", "later = tested_index > rival_index", "later = 0"),
+    ("sweep", "take = nearer_heir", "take = 0"),
+    ("sweep", "take = answer_left >= 0", "take = 0"),
+    ("corner_finder", "at_left = answer_left == 0", "at_left = 0"),
+    ("corner_finder", "at_right = answer_right == 0", "at_right = 0"),
+    ("fold", "towards = winner_back != back_a", "towards = winner_back"),
+    ("first_change", "y = {~division_value", "y = {-division_value"),
+    ("run_joiner", "same = part_colour == colour", "same = 0"),
+]
+"""A module, and a text of its Verilog with a wrong one."""
+
+
+@pytest.mark.slow_sets(quick=("clipper-border", "fold-towards", "sweep-follows"))
+@pytest.mark.parametrize(("module", "right", "wrong"), FAULTS, ids=lambda text: text.split(" = ")[0])
+def test_a_planted_fault_is_noticed(module, right, wrong, leaf_of, random):
+    config = DESIGNS[-1]
+    leaf = unit_bench(leaf_of, config)
+    leaf.screen = config.screen_geometry
+    [path] = [path for path in leaf.verilog if path.stem == module]
+    plant(path, right, wrong)
+    with pytest.raises(AssertionError):
+        for _ in range(30):
+            check_frames(leaf, [any_frame(random, config)])

@@ -1,0 +1,380 @@
+# SPDX-License-Identifier: MIT
+"""A span unit with a table of rectangles that draws row after row, and the frames that it is given."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from hard_scenes import with_looks
+from myhdl import always, always_comb, block, instances
+from vectors import LAST, any_config, basis_inputs, by_axis, colour_word, named
+
+from raycaster.configuration import WORLD_SIZE, Configuration
+from raycaster.golden.exact import ExactModel
+from raycaster.golden.spans import Chain, Line, SpanModel
+from raycaster.golden.spans import row_slope as golden_slope
+from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.hdl.signals import bit, tied, unsigned
+from raycaster.rtl.common.interfaces import Direction, Rects
+from raycaster.rtl.common.records import rect_of
+from raycaster.rtl.common.widths import column_bits, index_bits, level_bits, span_slope_bits, step_bits
+from raycaster.rtl.span.entry_table import entry_table
+from raycaster.rtl.span.first_change import first_change
+from raycaster.rtl.span.line_eval import line_eval
+from raycaster.rtl.span.records import Answer, Division, Entry, Query, count_bits
+from raycaster.rtl.span.records import Chain as ChainRecord
+from raycaster.rtl.span.row_slope import row_slope
+from raycaster.rtl.span.set_up import set_up
+from raycaster.rtl.span.span_unit import span_unit
+from raycaster.rtl.span.sweep import sweep
+from raycaster.scene import UNTURNED, Basis, Light, Scene
+from raycaster.screens import Screen
+from raycaster.verif.random_world import (
+    ROOM,
+    random_basis,
+    random_camera,
+    random_grid,
+    random_light,
+    random_rectangles,
+)
+
+NOTHING = Rectangles(np.zeros((0, 2, 3), np.int64), np.zeros((0, 3), np.uint8), np.zeros(0, bool))
+"""A table without rectangles."""
+
+
+@block
+def frame_bench(
+    clk, reset, store, number, stored, usable, first_row, camera, picture, run, done, config: Configuration
+):
+    """Draw a row two cycles after first_row, and after each row the one below, with a unit of the span engine.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        store: strobe; stores a rectangle.
+        number: unsigned, `index_bits` bits; read with store.
+        stored: `Rect`; read with store.
+        usable: unsigned, a bit per rectangle.
+        first_row: strobe.
+        camera: `Camera`.
+        picture: `Picture`.
+        run: output `Run`; ready is an input.
+        done: output strobe.
+        config: the design.
+    """
+    rects, slope = Rects(config), Direction(span_slope_bits(config))
+    memory = [unsigned(len(stored.word)) for _ in range(1 << index_bits(config))]
+    begun, begins, start = bit(), bit(), bit()
+    camera_slope = row_slope(clk=clk, first_row=first_row, next_row=start, camera=camera, slope=slope, config=config)
+    unit = span_unit(
+        clk=clk, reset=reset, start=start, slope=slope, rects=rects, camera=camera, picture=picture, run=run,
+        done=done, config=config,
+    )  # fmt: skip
+
+    @always(clk.posedge)
+    def begin():
+        begun.next = first_row
+        begins.next = begun
+
+    @always_comb
+    def see_start():
+        start.next = begins or done
+        rects.usable.next = usable
+
+    @always(clk.posedge)
+    def keep():
+        if store:
+            memory[number].next = stored.word
+
+    @always(clk.posedge)
+    def fetch():
+        if rects.fetch:
+            rects.rect.word.next = memory[rects.index]
+
+    return instances()
+
+
+def rect_inputs(table: Rectangles, index: int, prefix: str = "stored") -> dict[str, int]:
+    """Return a rectangle that has a plane, as at a port."""
+    axis = int(table.axes[index])
+    u, v = OTHER_AXES[axis]
+    low, high = table.low[index].tolist(), table.high[index].tolist()
+    return {
+        f"{prefix}_axis": axis, f"{prefix}_position": low[axis], f"{prefix}_u_low": low[u], f"{prefix}_u_high": high[u],
+        f"{prefix}_v_low": low[v], f"{prefix}_v_high": high[v], f"{prefix}_colour": colour_word(table.colours[index]),
+        f"{prefix}_mirror": int(table.mirrors[index]), f"{prefix}_kind": int(table.kinds[index]),
+        f"{prefix}_cell": int(table.cells[index]).bit_length() - 4,
+        f"{prefix}_colour_2": colour_word(table.colours_2[index]),
+    }  # fmt: skip
+
+
+def frame_inputs(frame: Frame) -> list[dict[str, Any]]:
+    """Return the cycles that load a frame, up to the one after first_row."""
+    table, light = frame.table, frame.light
+    fixed = by_axis("camera_", frame.camera) | basis_inputs(frame.basis)
+    fixed |= {"reset": 0, "usable": 0, "run_ready": 1, "store": 1, "camera_light_on": 0}
+    fixed |= {"picture_reflections": frame.reflections, "picture_background": colour_word(frame.background)}
+    if light:
+        fixed |= by_axis("camera_light_", light.position) | {"camera_light_shade": light.quarters, "camera_light_on": 1}
+    seen = np.flatnonzero(table.visible).tolist()
+    loads = [fixed | rect_inputs(table, index) | {"number": index} for index in seen]
+    begin = fixed | {"usable": sum(1 << index for index in seen), "store": 0, "first_row": 1}
+    return [*loads, begin | {"first_row": 0}, begin, begin | {"first_row": 0}]
+
+
+@block
+def chain_bench(
+    clk, reset, store, number, stored, usable, slope, step, chain, begin_set_up, clear, give, given, begin_sweep, gap,
+    column, winner, count, entry, append, set_up_done, swept_stop, inherited, heir, sweep_done, config: Configuration,
+):  # fmt: skip
+    """Set up chains, and sweep over given entries, with the blocks of a span unit.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        store: strobe; stores a rectangle.
+        number: unsigned, `index_bits` bits; read with store.
+        stored: `Rect`; read with store.
+        usable: unsigned, a bit per rectangle.
+        slope: `Direction`.
+        step: `Direction`.
+        chain: `Chain`.
+        begin_set_up: strobe.
+        clear: strobe; forgets the entries for the sweep.
+        give: strobe; adds an entry for the sweep.
+        given: `Entry`; read with give.
+        begin_sweep: strobe.
+        gap: flag.
+        column: unsigned, `column_bits` bits.
+        winner: `Entry`.
+        count: unsigned output, `count_bits` bits.
+        entry: output `Entry`.
+        append: output strobe.
+        set_up_done: output strobe.
+        swept_stop: unsigned output, `column_bits` bits.
+        inherited: output flag.
+        heir: output `Entry`.
+        sweep_done: output strobe.
+        config: the design.
+    """
+    rects, answer, tested, put = Rects(config), Answer(config), Entry(config), Entry(config)
+    memory = [unsigned(len(stored.word)) for _ in range(1 << index_bits(config))]
+    known, put_number, putting = unsigned(count_bits(config)), unsigned(count_bits(config)), bit()
+    columns, place, level = (
+        unsigned(column_bits(config)), unsigned(index_bits(config)), tied(0, level_bits(config))
+    )  # fmt: skip
+    ask, set_up_ask, sweep_ask, divide, set_up_divide, sweep_divide, divided, read = (bit() for _ in range(8))
+    query, set_up_query, sweep_query = (Query(config) for _ in range(3))
+    division, set_up_division, sweep_division = (Division(config) for _ in range(3))
+    finder = set_up(
+        clk=clk, reset=reset, start=begin_set_up, chain=chain, rects=rects, answer=answer, divided=divided,
+        columns=columns, ask=set_up_ask, query=set_up_query, divide=set_up_divide, division=set_up_division,
+        append=append, entry=entry, count=count, done=set_up_done, config=config,
+    )  # fmt: skip
+    table = entry_table(
+        clk=clk, level=level, append=putting, number=put_number, entry=put, read=read, place=place, stored=tested,
+        config=config,
+    )  # fmt: skip
+    sweeper = sweep(
+        clk=clk, reset=reset, start=begin_sweep, gap=gap, column=column, chain_stop=chain.stop, winner=winner,
+        count=known, tested=tested, answer=answer, divided=divided, columns=columns, read=read, place=place,
+        ask=sweep_ask, query=sweep_query, divide=sweep_divide, division=sweep_division, stop=swept_stop,
+        inherited=inherited, heir=heir, done=sweep_done, config=config,
+    )  # fmt: skip
+    evaluator = line_eval(
+        clk=clk, reset=reset, ask=ask, query=query, slope=slope, step=step, answer=answer, config=config
+    )
+    divider = first_change(
+        clk=clk, reset=reset, start=divide, division=division, columns=columns, done=divided, config=config
+    )
+
+    @always_comb
+    def choose_entry():
+        putting.next = append or give
+        put.word.next = entry.word
+        put_number.next = count
+        if give:
+            put.word.next = given.word
+            put_number.next = known
+
+    @always(clk.posedge)
+    def tally():
+        if clear:
+            known.next = 0
+        elif give:
+            known.next = known + 1
+
+    @always_comb
+    def choose():
+        rects.usable.next = usable
+        ask.next = set_up_ask or sweep_ask
+        divide.next = set_up_divide or sweep_divide
+        query.word.next = set_up_query.word
+        division.word.next = set_up_division.word
+        if sweep_ask:
+            query.word.next = sweep_query.word
+        if sweep_divide:
+            division.word.next = sweep_division.word
+
+    @always(clk.posedge)
+    def keep():
+        if store:
+            memory[number].next = stored.word
+
+    @always(clk.posedge)
+    def fetch():
+        if rects.fetch:
+            rects.rect.word.next = memory[rects.index]
+
+    return instances()
+
+
+def chain_ports(config: Configuration) -> dict[str, Any]:
+    """Return the ports of `chain_bench`, as `leaf_of` takes them."""
+    width, entries = column_bits(config), ("given", "winner", "entry", "heir")
+    return {
+        "number": index_bits(config), "stored": lambda: rect_of(config), "usable": config.rectangles,
+        "slope": lambda: Direction(span_slope_bits(config)), "step": lambda: Direction(step_bits(config)),
+        "chain": lambda: ChainRecord(config), "column": width, "count": count_bits(config), "swept_stop": width,
+        **{name: lambda: Entry(config) for name in entries},
+    }  # fmt: skip
+
+
+def chain_inputs(chain: Chain, axis: int = 0, back: bool = False) -> dict[str, int]:
+    """Return a chain of the golden model, whose last mirror is on this axis, as at a port."""
+    inputs = {"chain_start": chain.start, "chain_stop": chain.stop} | by_axis("chain_eye_", chain.eye)
+    mirror = {"mirrored": chain.distance > 0, "axis": axis, "back": back, "distance": chain.distance}
+    met = by_axis("chain_met_", (place in chain.met for place in range(3)))
+    return inputs | by_axis("chain_back_", chain.back) | named("chain", mirror) | met
+
+
+def span_config(**options: Any) -> Configuration:
+    """Make a design for the blocks of the span engine, on any screen; other engines check rows and looks."""
+    light = options.pop("light", False)
+    config = any_config(engine="beam" if "scale" in options else "exact", **options)
+    return replace(config, light=light)
+
+
+def any_slope(random: np.random.Generator, config: Configuration) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Return the slope of a row's first column, and its change, often for the highest row or the steepest basis."""
+    screen = config.screen_geometry
+    row = int(random.choice([0, screen.rows - 1, int(random.integers(screen.rows))]))
+    basis = UNTURNED
+    if config.turn:
+        basis = random_basis(random)
+        if random.random() < 0.3:
+            basis = tuple(tuple(random.choice([-512, 511], 3).tolist()) for _ in range(3))
+    return golden_slope(screen, basis, row)
+
+
+def line_inputs(axes: Sequence[int], backs: Sequence[int], factors: Sequence[int]) -> dict[str, int]:
+    """Return the operands of a query."""
+    inputs = {}
+    for place, (axis, back, factor) in enumerate(zip(axes, backs, factors, strict=True), 1):
+        inputs |= {f"query_axis_{place}": axis, f"query_back_{place}": back, f"query_factor_{place}": factor}
+    return inputs
+
+
+def any_chain(
+    random: np.random.Generator, config: Configuration, slope: Sequence[Line], camera: np.ndarray
+) -> tuple[Chain, tuple[int, bool]]:
+    """Return a chain after some mirrors, all of which its rays meet one after the other, and the last one's axis and
+    sign, as `chain_inputs` takes them."""
+    columns = config.screen_geometry.columns
+    start = int(random.choice([0, int(random.integers(columns))]))
+    stop = int(random.choice([columns, start + 1, int(random.integers(start + 1, columns + 1))]))
+    chain, mirror = Chain(start, stop, tuple(camera.tolist()), (False, False, False)), (0, False)
+    for _ in range(int(random.integers(config.reflections + 1))):
+        axis, plane = int(random.integers(3)), int(random.choice([0, 511, 256, *random.integers(512, size=2)]))
+        far = plane - chain.eye[axis]
+        back = chain.back[axis] != (far < 0)
+        line = Line(-slope[axis].at_0, -slope[axis].growth) if back else slope[axis]
+        ends = [line.at(column) for column in (chain.start, chain.stop - 1)]
+        # In all columns, the mirror is ahead and not before the last one.
+        beyond = [abs(far) * chain.ahead.at(column) - chain.distance * line.at(column)
+                  for column in (chain.start, chain.stop - 1)]  # fmt: skip
+        if not far or min(ends) <= 0 or (chain.distance and min(beyond) < 0):
+            continue
+        eye = tuple(2 * plane - one if axis == place else one for place, one in enumerate(chain.eye))
+        backs = tuple(one != (axis == place) for place, one in enumerate(chain.back))
+        kept = chain.met if chain.distance and max(beyond) == 0 else frozenset()
+        chain, mirror = Chain(start, stop, eye, backs, abs(far), line, kept | {axis}), (axis, back)
+    return chain, mirror
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A picture to draw: a table, and what is seen of it."""
+
+    table: Rectangles
+    camera: tuple[int, int, int]
+    background: tuple[int, int, int]
+    reflections: int
+    basis: Basis = UNTURNED
+    light: Light | None = None
+
+    def model(self, screen: Screen) -> SpanModel:
+        """Return the model of the unit that draws the frame."""
+        return SpanModel(self.table, self.camera, self.background, screen.columns, self.reflections, self.light)
+
+    def picture(self, screen: Screen) -> np.ndarray:
+        """Return the picture, from the golden model that traces single rays."""
+        return ExactModel().picture(
+            screen, self.table, self.camera, self.background, self.reflections, basis=self.basis, light=self.light
+        )
+
+
+def stiff_table(random: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return corners, int64 (rectangles, 2, 3), and a camera: facing mirrors, planes through one edge, or combs."""
+    kind, corners = int(random.integers(3)), random.integers(WORLD_SIZE, size=(count, 2, 3))
+    camera = random.integers(WORLD_SIZE, size=3)
+    flat = random.integers(3, size=count)
+    index = np.arange(count)
+    if kind == 0:
+        # Opposite ends of the world along one axis.
+        flat[:] = random.integers(3)
+        corners[:, 0], corners[:, 1] = 0, LAST
+        corners[index, 0, flat] = random.choice([0, 1, LAST - 1, LAST], count)
+    elif kind == 1:
+        # All planes meet in an edge, and the camera is on a diagonal through it.
+        place = 32 * random.integers(1, 15, 3)
+        corners[index, random.integers(2, size=count)] = place
+        corners[index, 0, flat] = place[flat]
+        camera = np.clip(place - 32 * int(random.integers(1, 8)), 0, LAST)
+    else:
+        # Strips one unit wide.
+        flat[:] = random.integers(3)
+        across = (flat + 1) % 3
+        corners[index, 0, flat] = random.choice([256, 257, 400], count)
+        corners[index, 1, across] = np.minimum(corners[index, 0, across] + random.integers(2, size=count), LAST)
+    corners[index, 1, flat] = corners[index, 0, flat]
+    return corners, camera
+
+
+def any_frame(random: np.random.Generator, config: Configuration) -> Frame:
+    """Return a frame that a design can draw: a random, a cornered or a stiff world, with the looks of the design."""
+    count, kind = config.rectangles, int(random.integers(3))
+    if kind == 0:
+        table = random_rectangles(random, count, closed=None if count > len(ROOM) else False)
+        camera = random_camera(random, table)
+    else:
+        corners, camera = random_grid(random, max(count, len(ROOM))) if kind == 1 else stiff_table(random, count)
+        colours = random.integers(256, size=(len(corners), 3)).astype(np.uint8)
+        table = Rectangles(corners, colours, np.ones(len(corners), dtype=bool))
+        table = replace(table, enabled=np.arange(len(corners)) < count)
+    table = with_looks(random, config, table)
+    reflections = int(random.integers(config.reflections + 1)) if random.random() < 0.3 else config.reflections
+    light = random_light(random, table, camera) if config.light and random.random() < 0.8 else None
+    x, y, z = camera.tolist()
+    red, green, blue = random.integers(256, size=3).tolist()
+    basis = random_basis(random) if config.turn else UNTURNED
+    return Frame(table, (x, y, z), (red, green, blue), reflections, basis, light)
+
+
+def scene_frame(scene: Scene) -> Frame:
+    """Return the frame of a scene."""
+    table, camera = Rectangles.of_scene(scene), scene.camera
+    return Frame(table, camera.position, scene.background, scene.reflections, camera.basis, scene.light)
