@@ -66,18 +66,22 @@ class Register:
 
 
 @lru_cache
-def compile_registers(rectangles: int) -> AddrmapNode:
-    """Compile the map of a design with this many entries in its rectangle table; callers share the tree."""
+def compile_registers(rectangles: int, lists: bool = False) -> AddrmapNode:
+    """Compile the map of a design with this many entries in its rectangle table; callers share the tree.
+
+    With lists, the design draws frames into lists, and has registers for them.
+    """
     compiler = RDLCompiler()
-    compiler.compile_file(str(SOURCE), defines={"RECTANGLES": str(rectangles)} if rectangles else {"NO_TABLE": ""})
+    defines = {"RECTANGLES": str(rectangles)} if rectangles else {"NO_TABLE": ""}
+    compiler.compile_file(str(SOURCE), defines=defines | ({"LISTS": ""} if lists else {}))
     return compiler.elaborate("ray_caster").top
 
 
 @lru_cache
-def register_map(rectangles: int) -> dict[str, Register]:
+def register_map(rectangles: int, lists: bool = False) -> dict[str, Register]:
     """Return every register by its path: `"control"`, `"camera"`, `"rectangle[3].corner_0"`, ..."""
     registers = {}
-    for node in compile_registers(rectangles).descendants(unroll=True):
+    for node in compile_registers(rectangles, lists).descendants(unroll=True):
         if isinstance(node, RegNode):
             path = node.get_path().removeprefix("ray_caster.")
             registers[path] = Register(path, node.absolute_address // 4, dict(map(_field, node.fields())))
@@ -89,7 +93,7 @@ def _field(node: FieldNode) -> tuple[str, RegisterField]:
     return node.inst_name, RegisterField(node.low, node.width, reset if isinstance(reset, int) else 0)
 
 
-def address_bits(rectangles: int) -> int:
+def address_bits(rectangles: int, lists: bool = False) -> int:
     """Return the width of the bus's word address."""
-    last = max(register.address for register in register_map(rectangles).values())
+    last = max(register.address for register in register_map(rectangles, lists).values())
     return last.bit_length()

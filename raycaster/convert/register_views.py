@@ -23,32 +23,35 @@ SOFTWARE = Path("sw")
 """Folder of the headers that are kept with the sources, relative to the root."""
 
 
-def write_header(rectangles: int, path: Path) -> None:
+def write_header(rectangles: int, path: Path, lists: bool = False) -> None:
     """Write the C header: a struct of the registers, and each field's mask, position and width.
 
     Args:
         rectangles: entries of the hardware's table, up to 32.
         path: the file; replaced.
+        lists: True for a design that draws frames into lists.
     """
     with tempfile.TemporaryDirectory() as scratch:
         # The header's include guard is made from the file's name.
         written = Path(scratch) / HEADER
-        CHeaderExporter().export(compile_registers(rectangles), str(written), std=CStandard.gnu99)
+        CHeaderExporter().export(compile_registers(rectangles, lists), str(written), std=CStandard.gnu99)
         path.write_text(f"// SPDX-License-Identifier: MIT\n{written.read_text()}")
 
 
-def write_page(rectangles: int, directory: Path) -> Path:
+def write_page(rectangles: int, directory: Path, lists: bool = False) -> Path:
     """Write the web page, which a browser opens without a server.
 
     Args:
         rectangles: entries of the hardware's table, 1 to 32.
         directory: replaced as a whole.
+        lists: True for a design that draws frames into lists.
 
     Returns:
         The start page.
     """
     with replaced(directory) as written:
-        HTMLExporter().export(compile_registers(rectangles), str(written), title="RayCaster registers")  # pyright: ignore[reportArgumentType]
+        registers = compile_registers(rectangles, lists)
+        HTMLExporter().export(registers, str(written), title="RayCaster registers")  # pyright: ignore[reportArgumentType]
     return directory / "index.html"
 
 

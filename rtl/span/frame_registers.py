@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: MIT
+"""The registers about frames that are drawn into lists."""
+
+from myhdl import Signal, always_comb, always_seq, block, instances, intbv
+
+from raycaster.hdl.signals import bit, tied, unsigned
+from raycaster.registers import register_map
+from raycaster.rtl.common.widths import WORD_BITS
+
+
+@block
+def frame_registers(clk, reset, bus, events, readback, rectangles: int):
+    """Keep what became of frames, for software: the registers `frames` of the map.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        bus: `SceneBus`; write, address, data and mask are read.
+        events: `FrameEvents`; input.
+        readback: unsigned output, 32 bits; the word at bus.address, 0 at other registers' addresses.
+        rectangles: entries of the rectangle table.
+    """
+    registers = register_map(rectangles, lists=True)
+    counts, status = registers["frames.counts"], registers["frames.status"]
+    again_low = counts.fields["again"].lsb
+    count_bits = counts.fields["drawn"].width
+    late_bit, full_bit = (status.fields[name].lsb for name in ("late", "list_full"))
+    most = (1 << count_bits) - 1
+    none = registers["frames.left"].reset
+    cycles_address, left_address, counts_address, status_address = (
+        tied(registers[f"frames.{name}"].address, len(bus.address)) for name in ("cycles", "left", "counts", "status")
+    )
+
+    cycles, least = unsigned(WORD_BITS), Signal(intbv(none)[WORD_BITS:])
+    drawn, again = unsigned(count_bits), unsigned(count_bits)
+    late, list_full, clears = bit(), bit(), bit()
+    ones = unsigned(WORD_BITS)
+
+    @always_comb
+    def decode():
+        ones.next = bus.data & bus.mask
+        clears.next = bus.write and bus.address == left_address and bus.mask != 0
+
+    @always_seq(clk.posedge, reset=reset)
+    def measure():
+        if events.drawn:
+            cycles.next = events.time
+        if events.late:
+            least.next = 0
+        elif events.shown and (clears or events.time < least):
+            least.next = events.time
+        elif clears:
+            least.next = none
+
+    @always_seq(clk.posedge, reset=reset)
+    def count():
+        if events.drawn:
+            drawn.next = (drawn + 1) % (most + 1)
+        if events.again:
+            again.next = (again + 1) % (most + 1)
+
+    # What is set and cleared in the same cycle, is set; the least time, likewise.
+    @always_seq(clk.posedge, reset=reset)
+    def remember():
+        if bus.write and bus.address == status_address:
+            if ones[late_bit]:
+                late.next = False
+            if ones[full_bit]:
+                list_full.next = False
+        if events.late:
+            late.next = True
+        if events.list_full:
+            list_full.next = True
+
+    @always_comb
+    def read():
+        readback.next = 0
+        if bus.address == cycles_address:
+            readback.next = cycles
+        elif bus.address == left_address:
+            readback.next = least
+        elif bus.address == counts_address:
+            readback.next[count_bits:] = drawn
+            readback.next[again_low + count_bits : again_low] = again
+        elif bus.address == status_address:
+            readback.next[late_bit] = late
+            readback.next[full_bit] = list_full
+
+    return instances()
