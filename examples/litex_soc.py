@@ -17,7 +17,7 @@ from raycaster.configuration import Configuration
 from raycaster.design.decide import configure
 from raycaster.design.options import run_command
 from raycaster.memory_map import MEMORY_BYTES
-from raycaster.rtl.common.interfaces import vga_of
+from raycaster.rtl.common.interfaces import Vga
 from raycaster.sw.firmware import DRIVER, START, build_firmware
 
 try:
@@ -36,7 +36,7 @@ PROGRAM = Path(__file__).with_suffix(".c")
 
 def pins(config: Configuration) -> list[tuple]:
     """The SoC's ports; a board's platform would assign pins to them."""
-    vga = (Subsignal(name, Pins(len(port))) for name, port in vars(vga_of(config)).items())
+    vga = (Subsignal(name, Pins(len(port))) for name, port in vars(Vga(config.port_bits)).items())
     return [("clk", 0, Pins(1)), ("reset", 0, Pins(1)), ("leds", 0, Pins(8)), ("vga", 0, *vga)]
 
 

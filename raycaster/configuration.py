@@ -216,6 +216,11 @@ class Configuration(Options):
         return self.fixed.shadows if self.fixed else self.passes
 
     @property
+    def port_bits(self) -> int:
+        """Bits per colour of the VGA output: a channel of each pixel of a clock."""
+        return self.colour_bits * self.pixels
+
+    @property
     def capacity(self) -> int | None:
         """Most rectangles that a scene may have; None for a fixed scene, some of whose rectangles may be left out."""
         return None if self.fixed else self.rectangles

@@ -19,7 +19,7 @@ from raycaster.convert.take_home import PREFIX, TOP
 from raycaster.convert.write import write_verilog
 from raycaster.errors import UserError
 from raycaster.registers import address_bits, register_map
-from raycaster.rtl.common.interfaces import vga_of
+from raycaster.rtl.common.interfaces import Vga
 
 BUSES = ("wishbone", "axi4lite")
 """Supported values of `Configuration.bus`; LiteX adapts both to the SoC's bus."""
@@ -65,7 +65,7 @@ class RayCaster(LiteXModule):
         self.ev = EventManager()
         self.ev.frame = EventSourceLevel(description="A frame has begun; cleared in the ray tracer's irq_pending.")
         self.ev.finalize()
-        self.vga = {name: Signal(len(port), name=f"vga_{name}") for name, port in vars(vga_of(config)).items()}
+        self.vga = {name: Signal(len(port), name=f"vga_{name}") for name, port in vars(Vga(config.port_bits)).items()}
         ports: dict[str, Any] = {f"o_vga_{name}": signal for name, signal in self.vga.items()}
         self.specials += Instance(
             TOP,

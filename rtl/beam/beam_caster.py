@@ -13,7 +13,7 @@ from raycaster.rtl.beam.lane_start import lane_start
 from raycaster.rtl.beam.line_starter import line_starter
 from raycaster.rtl.beam.row_register import row_register
 from raycaster.rtl.common.interfaces import Direction
-from raycaster.rtl.common.records import Look, Pixel, facet_of, growth_of, walk_of
+from raycaster.rtl.common.records import Facet, Look, Pixel, Walk, growth_of
 from raycaster.rtl.common.widths import exact_slope_bits
 from raycaster.rtl.engine.rect_setup import rect_setup
 
@@ -24,7 +24,7 @@ def known_facet(number: int, config: Configuration) -> dict[str, int]:
         return {}
     rectangle = config.fixed.rectangles[number]
     distance = {"distance": config.fixed.distances[number]} if config.fixed.camera else {}
-    look = {name: getattr(rectangle, name) for name in Look(config.materials, config.patterns).layout}
+    look = {name: getattr(rectangle, name) for name in Look(config).layout}
     return {"usable": 1, "axis": rectangle.axis, **look, **distance}
 
 
@@ -79,8 +79,8 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
     centre_column, view_distance = config.screen_geometry.centre_column, config.screen_geometry.view_distance
 
     load, last_rectangle = unsigned(config.rectangles), config.rectangles - 1
-    new_facet, new_growth, new_start = facet_of(config), growth_of(config), walk_of(config)
-    facets = [facet_of(config) for _ in range(config.rectangles)]
+    new_facet, new_growth, new_start = Facet(config), growth_of(config), Walk(config)
+    facets = [Facet(config) for _ in range(config.rectangles)]
     facet_words = [facet.word for facet in facets]
     growth_words = [[unsigned(bits) for bits in new_growth.layout.values()] for _ in facets]
     all_facets = side_by_side(facet_words)
@@ -101,7 +101,7 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
         )  # fmt: skip
         aims = [aim for _ in lanes]
         enters = [enter(lane) for lane in lanes]
-        loads, lane_starts = [tied(0, load) for _ in lanes], [walk_of(config).tie({}) for _ in lanes]
+        loads, lane_starts = [tied(0, load) for _ in lanes], [Walk(config).tie({}) for _ in lanes]
     else:
         for lane, lane_aim in enumerate(aims):
             lane_aim.x, lane_aim.z = tied(view_distance, lane_aim.x), row_slope
@@ -113,7 +113,7 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
         )  # fmt: skip
         enters, loads, lane_starts = [tied(0, 1) for _ in lanes], [load], [new_start]
         if config.pixels > 1:
-            late_load, first_start, second_start = unsigned(config.rectangles), walk_of(config), walk_of(config)
+            late_load, first_start, second_start = unsigned(config.rectangles), Walk(config), Walk(config)
             late_starts = lane_start(
                 clk, load=load, start=new_start, growth=new_growth, late_load=late_load, first_start=first_start,
                 second_start=second_start,

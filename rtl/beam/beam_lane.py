@@ -24,8 +24,7 @@ from raycaster.rtl.beam.mirror_look_up import mirror_look_up
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.beam.slope_walker import ray_slope, slope_walker
 from raycaster.rtl.common.delay_line import delay_line
-from raycaster.rtl.common.records import Reflector, Sight, candidate_of, fold_of, room_image_of, seen_of, winner_of
-from raycaster.rtl.common.widths import index_bits
+from raycaster.rtl.common.records import Candidate, Fold, Reflector, RoomImage, Seen, Sight, Winner
 
 
 @block
@@ -91,9 +90,9 @@ def beam_lane(
     def step_after(cycles: int):
         return steps(cycles, cycles - 1)
 
-    folds = [fold_of(config).tie({}), *(fold_of(config) for _ in range(reflections))]
-    winners = [winner_of(config) for _ in numbers]
-    hits = [candidate_of(config) if config.patterns else candidate_of(config).left_open() for _ in numbers]
+    folds = [Fold(config).tie({}), *(Fold(config) for _ in range(reflections))]
+    winners = [Winner(config) for _ in numbers]
+    hits = [Candidate(config) if config.patterns else Candidate(config).left_open() for _ in numbers]
     beams = [
         beam_pass(clk, start_line=restart, load=load, step=step_after(first),
             step_way=step_after(first + (not reflected)), step_bounds=step_after(first + 1),
@@ -111,10 +110,10 @@ def beam_lane(
         for first, slope in zip(starts, late_slopes, strict=False)
     ]
     # The image of the room that a ray is in, at the time when its hit is known.
-    images = [room_image_of(config).tie({}), *(room_image_of(config) for _ in range(reflections))]
+    images = [RoomImage(config).tie({}), *(RoomImage(config) for _ in range(reflections))]
 
     if config.patterns:
-        sights = [Sight(index_bits(config)) for _ in numbers]
+        sights = [Sight(config) for _ in numbers]
         cell_finders = [
             hit_cells(
                 clk, image=image, nearest=hit, winner=winner, slope=slope, camera=camera, sight=sight, config=config
@@ -140,13 +139,13 @@ def beam_lane(
     # step.
     step_look_up = step_after(look_up_at)
 
-    sees = [seen_of(config) for _ in numbers]
+    sees = [Seen(config) for _ in numbers]
     look_ups = [
         look_up(clk, step_look_up, facets=facets, sight=one[-1], seen=seen, config=config)
         for one, seen in zip(stages, sees, strict=True)
     ]
     # A reflection without a pass sees nothing.
-    missing = ["0" * len(seen_of(config).word)] * (config.reflections - reflections)
+    missing = ["0" * len(Seen(config).word)] * (config.reflections - reflections)
     all_seen = side_by_side([*(seen.word for seen in sees), *missing])
     blender = colour_blend(clk, seen=all_seen, picture=picture, pixel=pixel, config=config)
 

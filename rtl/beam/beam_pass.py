@@ -16,7 +16,7 @@ from raycaster.rtl.beam.rect_walker import rect_walker
 from raycaster.rtl.beam.slope_walker import ray_slope, slope_walker
 from raycaster.rtl.common.interfaces import Slope
 from raycaster.rtl.common.magnitude import magnitude
-from raycaster.rtl.common.records import Signs, candidate_of, facet_of, stride_of, walk_of
+from raycaster.rtl.common.records import Candidate, Facet, Signs, Walk, stride_of
 from raycaster.rtl.common.widths import exact_slope_bits, index_bits
 
 
@@ -53,9 +53,9 @@ def beam_pass(
     slope_bits = exact_slope_bits(config)
     straight, signs = ray_slope(aim, config), Signs()
     size, size_1 = Slope(slope_bits), Slope(slope_bits)
-    tested_facets = [facet_of(config).cut(facets, i) for i in tested]
+    tested_facets = [Facet(config).cut(facets, i) for i in tested]
     grown = [stride_of(config).cut(growths, i) for i in tested]
-    walks, hits = [walk_of(config) for _ in tested], [candidate_of(config) for _ in tested]
+    walks, hits = [Walk(config) for _ in tested], [Candidate(config) for _ in tested]
 
     walkers = [
         rect_walker(clk, load=start_line if config.turn else load(i + 1, i), step_way=step_way, step_bounds=step_bounds,

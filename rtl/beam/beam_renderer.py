@@ -8,7 +8,7 @@ from raycaster.hdl.signals import bit, bits_for, signed, unsigned
 from raycaster.rtl.beam.beam_caster import beam_caster
 from raycaster.rtl.beam.latencies import beam_latency
 from raycaster.rtl.common.interfaces import Scan
-from raycaster.rtl.common.records import shown_of
+from raycaster.rtl.common.records import Pixel
 from raycaster.rtl.common.widths import CYCLE_BITS, factor_bits, row_bits
 from raycaster.rtl.video.video_generator import video_generator
 
@@ -36,7 +36,7 @@ def beam_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
     last_repeat = screen.doubling - 1
     cycles_limit = (1 << CYCLE_BITS) - 1
 
-    scan, pixel, shown = Scan(start_screen=progress.start_screen), shown_of(config), shown_of(config)
+    scan, pixel, shown = Scan(start_screen=progress.start_screen), Pixel(config.port_bits), Pixel(config.port_bits)
     start_line, hs_before = bit(), bit()
     first_row, first_line, in_picture, drawing = bit(), bit(), bit(), bit()
     row = unsigned(row_bits(config))

@@ -10,7 +10,7 @@ from raycaster.rtl.beam.colour_mix import colour_mix
 from raycaster.rtl.beam.colour_seen import colour_seen
 from raycaster.rtl.beam.latencies import MIX_LATENCY, mixes
 from raycaster.rtl.common.delay_line import delay_line
-from raycaster.rtl.common.records import seen_of, shade_of
+from raycaster.rtl.common.records import Seen, Shade
 
 
 @block
@@ -29,8 +29,8 @@ def colour_blend(clk, seen, picture, pixel, config: Configuration):
     colour_bits, mirrors = config.colour_bits, config.reflections
     rays = range(mirrors + 1)
 
-    ones = [seen_of(config).cut(seen, number) for number in rays]
-    shades = [shade_of(config) for _ in rays]
+    ones = [Seen(config).cut(seen, number) for number in rays]
+    shades = [Shade(config) for _ in rays]
     reached = [tied(1, bit()), *(bit() for _ in range(mirrors)), unconnected(bit())]
     lookers = [
         colour_seen(clk, reached=reached[number], seen=one, picture=picture, found=reached[number + 1], shade=shade,

@@ -9,7 +9,7 @@ from raycaster.rtl.beam.hit_cell import hit_cell
 from raycaster.rtl.beam.latencies import CELL_LATENCY
 from raycaster.rtl.common.by_axis import along_u, along_v, by_axis
 from raycaster.rtl.common.delay_line import delay_line
-from raycaster.rtl.common.records import winner_of
+from raycaster.rtl.common.records import Winner
 from raycaster.rtl.common.widths import AXIS_BITS, CELL_BITS, exact_slope_bits, eye_bits, shift_bits
 
 
@@ -37,7 +37,7 @@ def hit_cells(clk, image, nearest, winner, slope, camera, sight, config: Configu
     slope_u, slope_v = signed(slope_bits + 1), signed(slope_bits + 1)
     eye_u, eye_v = unsigned(COORDINATE_BITS), unsigned(COORDINATE_BITS)
     back_u, back_v, odd_u, odd_v = bit(), bit(), bit(), bit()
-    late = winner_of(config)
+    late = Winner(config)
 
     @always(clk.posedge)
     def stage_1():

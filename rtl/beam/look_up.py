@@ -6,7 +6,7 @@ from myhdl import always, always_comb, block, instances
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, unsigned
 from raycaster.rtl.beam.word_of import word_of
-from raycaster.rtl.common.records import Look, facet_of
+from raycaster.rtl.common.records import Facet, Look
 from raycaster.rtl.common.widths import RGB_BITS
 from raycaster.rtl.engine.pattern_colour import pattern_colour
 
@@ -23,9 +23,9 @@ def look_up(clk, step, facets, sight, seen, config: Configuration):
         seen: `Seen`; output, valid from `LOOK_UP_LATENCY` cycles after a step until the next one.
         config: the design.
     """
-    words = [unsigned(len(facet_of(config).word)) for _ in range(config.rectangles)]
-    takers = [word_of(facet_of(config).cut(facets, i), word) for i, word in enumerate(words)]
-    found, look = bit(), Look(config.materials, config.patterns)
+    words = [unsigned(len(Facet(config).word)) for _ in range(config.rectangles)]
+    takers = [word_of(Facet(config).cut(facets, i), word) for i, word in enumerate(words)]
+    found, look = bit(), Look(config)
     look_bits = len(look.word)
 
     @always(clk.posedge)

@@ -6,7 +6,7 @@ from myhdl import always, always_comb, block, instances
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import unsigned
 from raycaster.rtl.beam.word_of import word_of
-from raycaster.rtl.common.records import facet_of
+from raycaster.rtl.common.records import Facet
 
 
 @block
@@ -20,9 +20,9 @@ def mirror_look_up(clk, facets, winner, last, config: Configuration):
         last: `Reflector`; output, `LOOK_UP_LATENCY` cycles after winner.
         config: the design.
     """
-    facet = facet_of(config)
+    facet = Facet(config)
     words = [unsigned(len(facet.word)) for _ in range(config.rectangles)]
-    takers = [word_of(facet_of(config).cut(facets, i), word) for i, word in enumerate(words)]
+    takers = [word_of(Facet(config).cut(facets, i), word) for i, word in enumerate(words)]
     mirror = last.joined(at_mirror=winner.at_mirror, axis=facet.axis, distance=facet.distance)
 
     @always_comb

@@ -8,7 +8,7 @@ from myhdl import always_comb, block, instances
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, side_by_side, tied, unconnected, unsigned
 from raycaster.rtl.common.interfaces import GroupFate, RayFate, Steps
-from raycaster.rtl.common.records import Pixel, rect_of, surface_of
+from raycaster.rtl.common.records import Pixel, Rect, Surface
 from raycaster.rtl.common.widths import unit_bits
 from raycaster.rtl.cull.group_culler import group_culler
 from raycaster.rtl.engine.ray_sequencer import ends_early
@@ -40,7 +40,7 @@ def ray_caster(
     """
     # With a mirrored eye, all rays are traced alike.
     steps = Steps(initial_ray=bit() if config.facts.divides else unconnected(1))
-    offered = rect_of(config) if config.facts.divides else surface_of(config)
+    offered = Rect(config) if config.facts.divides else Surface(config)
     unit_pixels = [Pixel(config.colour_bits) for _ in range(config.units)]
     fates = [RayFate() for _ in range(config.units)]
     together = side_by_side([pixel.word for pixel in unit_pixels])

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from raycaster.configuration import Configuration
 from raycaster.hdl.records import Interface
 from raycaster.hdl.signals import bit, signed, unconnected, unsigned
-from raycaster.rtl.common.records import rect_of
+from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import (
     CYCLE_BITS,
     LANES,
@@ -52,11 +52,6 @@ class Vga(Interface):
     def __init__(self, colour_bits: int):
         self.r, self.g, self.b = (unsigned(colour_bits) for _ in range(3))
         self.hs, self.vs, self.blank_n, self.sync_n, self.clk = (bit() for _ in range(5))
-
-
-def vga_of(config: Configuration) -> Vga:
-    """Return a `Vga` sized for this configuration."""
-    return Vga(config.colour_bits * config.pixels)
 
 
 class AvalonPort(Group):
@@ -304,7 +299,7 @@ class Rects(Group):
         self.usable = unsigned(config.rectangles)
         self.index = unsigned(index_bits(config))
         self.fetch = bit()
-        self.rect = rect_of(config)
+        self.rect = Rect(config)
         super().__init__(**given)
 
 

@@ -39,20 +39,14 @@ class Camera(Record):
     the dark.
     """
 
-    def __init__(self, turn: bool = False, light: bool = False):
+    def __init__(self, config: Configuration):
         basis = (f"{vector}_{axis}" for vector in ("forward", "right", "up") for axis in "xyz")
-        position = {f"light_{axis}": COORDINATE_BITS * light for axis in "xyz"}
+        light = {f"light_{axis}": COORDINATE_BITS for axis in "xyz"} | {"light_shade": SHADE_BITS, "light_on": 1}
         super().__init__(
             Point().layout
-            | dict.fromkeys(basis, Signed(BASIS_BITS * turn))
-            | position
-            | {"light_shade": SHADE_BITS * light, "light_on": int(light)}
+            | dict.fromkeys(basis, Signed(BASIS_BITS * config.turn))
+            | {name: bits * config.light for name, bits in light.items()}
         )
-
-
-def camera_of(config: Configuration) -> Camera:
-    """Return a `Camera` sized for this configuration."""
-    return Camera(config.turn, config.light)
 
 
 class Origin(Record):
@@ -90,11 +84,6 @@ class Pixel(Record):
         super().__init__(dict.fromkeys(("red", "green", "blue"), colour_bits))
 
 
-def shown_of(config: Configuration) -> Pixel:
-    """Return a record of the pixels shown in one clock: one, or two as the halves of each colour, as in `Vga`."""
-    return Pixel(config.colour_bits * config.pixels)
-
-
 class Look(Record):
     """The look of a rectangle: its colour and, if the design has them, its material and pattern.
 
@@ -102,50 +91,37 @@ class Look(Record):
     columns; cell: log2 of the cell size in world units, minus three; colour_2: the colour of every other cell.
     """
 
-    def __init__(self, materials: bool = False, patterns: bool = False):
-        super().__init__(look_fields(materials, patterns))
+    def __init__(self, config: Configuration):
+        super().__init__(look_fields(config))
 
 
-def look_fields(materials: bool, patterns: bool) -> dict[str, int]:
+def look_fields(config: Configuration) -> dict[str, int]:
     """Return the field widths of a `Look`."""
     pattern = {"kind": KIND_BITS, "cell": CELL_BITS, "colour_2": RGB_BITS}
-    return (
-        {"colour": RGB_BITS}
-        | {"mirror": MIRROR_BITS * materials}
-        | {name: bits * patterns for name, bits in pattern.items()}
-    )
+    material = {"colour": RGB_BITS, "mirror": MIRROR_BITS * config.materials}
+    return material | {name: bits * config.patterns for name, bits in pattern.items()}
 
 
 class Surface(Record):
     """The data of a hit rectangle that its ray needs: the plane's axis (0, 1, 2 for x, y, z), position and `Look`."""
 
-    def __init__(self, materials: bool = False, patterns: bool = False):
-        super().__init__(surface_fields(COORDINATE_BITS, materials, patterns))
+    def __init__(self, config: Configuration):
+        super().__init__(surface_fields(config))
 
 
-def surface_fields(coordinate_bits: int, materials: bool = False, patterns: bool = False) -> dict[str, int]:
+def surface_fields(config: Configuration, coordinate_bits: int = COORDINATE_BITS) -> dict[str, int]:
     """Return the field widths of a `Surface`, with which a `Rect` also begins."""
-    return {"axis": AXIS_BITS, "position": coordinate_bits} | look_fields(materials, patterns)
-
-
-def surface_of(config: Configuration) -> Surface:
-    """Return a `Surface` sized for this configuration."""
-    return Surface(config.materials, config.patterns)
+    return {"axis": AXIS_BITS, "position": coordinate_bits} | look_fields(config)
 
 
 class Rect(Record):
     """A rectangle: its surface, and inclusive bounds on the two other axes, u before v in the order x, y, z."""
 
-    def __init__(self, coordinate_bits: int = COORDINATE_BITS, materials: bool = False, patterns: bool = False):
+    def __init__(self, config: Configuration, coordinate_bits: int = COORDINATE_BITS):
         bounds = dict.fromkeys(("u_low", "u_high", "v_low", "v_high"), coordinate_bits)
-        surface, below = surface_fields(coordinate_bits, materials, patterns), sum(bounds.values())
-        look = below, sum(look_fields(materials, patterns).values())
+        surface, below = surface_fields(config, coordinate_bits), sum(bounds.values())
+        look = below, sum(look_fields(config).values())
         super().__init__(surface | bounds, {"surface": (below, sum(surface.values())), "look": look})
-
-
-def rect_of(config: Configuration) -> Rect:
-    """Return a `Rect` sized for this configuration."""
-    return Rect(materials=config.materials, patterns=config.patterns)
 
 
 class WideRect(Record):
@@ -159,17 +135,12 @@ class WideRect(Record):
 class Mirror(Record):
     """The mirror that a ray left last, if `active`: the axis of its plane, and its distance from the eye.
 
-    With corners, met_x, met_y, met_z: the axes of all mirrors that the ray met at that same point.
+    With more than one reflection, met_x, met_y, met_z: the axes of all mirrors that the ray met at that same point.
     """
 
-    def __init__(self, distance_bits: int, corners: bool = False):
-        met = dict.fromkeys(("met_x", "met_y", "met_z"), int(corners))
-        super().__init__({"active": 1, "axis": AXIS_BITS, "distance": distance_bits} | met)
-
-
-def mirror_of(config: Configuration) -> Mirror:
-    """Return a `Mirror` sized for this configuration; corners need a second reflection."""
-    return Mirror(eye_bits(config) - 1, corners=config.reflections > 1)
+    def __init__(self, config: Configuration, distance_bits: int | None = None):
+        met = dict.fromkeys(("met_x", "met_y", "met_z"), int(config.reflections > 1))
+        super().__init__({"active": 1, "axis": AXIS_BITS, "distance": distance_bits or eye_bits(config) - 1} | met)
 
 
 class Facet(Record):
@@ -181,22 +152,15 @@ class Facet(Record):
 
     def __init__(
         self,
-        way_bits: int,
+        config: Configuration,
+        way_bits: int | None = None,
         distance_bits: int = DISTANCE_BITS,
         *,
-        turn: bool = False,
-        materials: bool = False,
-        patterns: bool = False,
         bare: bool = False,
     ):
-        looks = {name: bits * (not bare) for name, bits in look_fields(materials, patterns).items()}
-        seen = {"usable": 1, "axis": AXIS_BITS, "distance": Signed(distance_bits)}
-        super().__init__(seen | {"way_q": Signed(way_bits * (not turn))} | looks)
-
-
-def facet_of(config: Configuration) -> Facet:
-    """Return a `Facet` sized for this configuration."""
-    return Facet(walk_bits(config), turn=config.turn, materials=config.materials, patterns=config.patterns)
+        look = {name: bits * (not bare) for name, bits in look_fields(config).items()}
+        way_q = Signed((way_bits or walk_bits(config)) * (not config.turn))
+        super().__init__({"usable": 1, "axis": AXIS_BITS, "distance": Signed(distance_bits), "way_q": way_q} | look)
 
 
 class Walk(Record):
@@ -206,24 +170,20 @@ class Walk(Record):
     the third axis; n D[q] changes only if the camera turns.
     """
 
-    def __init__(self, bits: int, turn: bool = False):
-        fields = dict.fromkeys(("way_p", "way_q", "low_p", "high_p", "low_q", "high_q"), Signed(bits))
-        super().__init__(fields | {"way_q": Signed(bits * turn)})
-
-
-def walk_of(config: Configuration) -> Walk:
-    """Return a `Walk` sized for this configuration."""
-    return Walk(walk_bits(config), config.turn)
+    def __init__(self, config: Configuration, bits: int | None = None):
+        width = bits or walk_bits(config)
+        fields = dict.fromkeys(("way_p", "way_q", "low_p", "high_p", "low_q", "high_q"), Signed(width))
+        super().__init__(fields | {"way_q": Signed(width * config.turn)})
 
 
 def growth_of(config: Configuration) -> Walk:
     """Return a record for the change of a `Walk` per column: products if the camera turns, otherwise distances."""
-    return walk_of(config) if config.turn else Walk(DISTANCE_BITS)
+    return Walk(config, None if config.turn else DISTANCE_BITS)
 
 
 def stride_of(config: Configuration) -> Walk:
     """Return a record for the change of a `Walk` over all columns of a clock."""
-    return walk_of(config) if config.turn else Walk(DISTANCE_BITS + config.pixels - 1)
+    return Walk(config, None if config.turn else DISTANCE_BITS + config.pixels - 1)
 
 
 class Reflector(Record):
@@ -243,14 +203,10 @@ class RoomImage(Record):
     image is reversed along that axis; shift_x, shift_y, shift_z: T, the shift of the image.
     """
 
-    def __init__(self, shift_bits: int):
+    def __init__(self, config: Configuration, shift: int | None = None):
         flags = dict.fromkeys(("met_x", "met_y", "met_z", "back_x", "back_y", "back_z"), 1)
-        super().__init__({**flags, **dict.fromkeys(("shift_x", "shift_y", "shift_z"), Signed(shift_bits))})
-
-
-def room_image_of(config: Configuration) -> RoomImage:
-    """Return a `RoomImage` sized for this configuration."""
-    return RoomImage(shift_bits(config))
+        shifts = dict.fromkeys(("shift_x", "shift_y", "shift_z"), Signed(shift or shift_bits(config)))
+        super().__init__(flags | shifts)
 
 
 class Fold(Record):
@@ -262,20 +218,23 @@ class Fold(Record):
     distance: those of the last mirror.
     """
 
-    def __init__(self, product_bits: int, walk_width: int, shift_bits: int, distance: int = DISTANCE_BITS):
-        image = RoomImage(shift_bits).layout
+    def __init__(
+        self,
+        config: Configuration,
+        product: int | None = None,
+        walk: int | None = None,
+        shift: int | None = None,
+        distance: int = DISTANCE_BITS,
+    ):
+        image = RoomImage(config, shift).layout
+        product, walk = product or fold_bits(config), walk or walk_bits(config)
         others = (
             {"mirror_back": 1}
-            | dict.fromkeys(("p_x", "p_y", "p_z", "q_x", "q_y", "q_z"), Signed(product_bits))
-            | dict.fromkeys(("border_x", "border_y", "border_z"), Signed(walk_width))
+            | dict.fromkeys(("p_x", "p_y", "p_z", "q_x", "q_y", "q_z"), Signed(product))
+            | dict.fromkeys(("border_x", "border_y", "border_z"), Signed(walk))
             | {"axis": AXIS_BITS, "distance": Signed(distance)}
         )
         super().__init__(image | others, {"image": (sum(others.values()), sum(image.values()))})
-
-
-def fold_of(config: Configuration) -> Fold:
-    """Return a `Fold` sized for this configuration."""
-    return Fold(fold_bits(config), walk_bits(config), shift_bits(config))
 
 
 class Candidate(Record):
@@ -285,51 +244,33 @@ class Candidate(Record):
     axis, cell: fields of the rectangle.
     """
 
-    def __init__(self, numerator_bits: int, denominator_bits: int, index_width: int, patterns: bool = False):
-        cell = {"axis": AXIS_BITS * patterns, "cell": CELL_BITS * patterns}
-        hit = {"valid": 1, "at_mirror": 1, "numerator": numerator_bits, "denominator": denominator_bits}
-        super().__init__({**hit, **cell, "index": index_width})
-
-
-def candidate_of(config: Configuration) -> Candidate:
-    """Return a `Candidate` sized for this configuration."""
-    return Candidate(eye_bits(config) - 1, exact_slope_bits(config), index_bits(config), config.patterns)
+    def __init__(self, config: Configuration, numerator: int | None = None, denominator: int | None = None):
+        numerator, denominator = numerator or eye_bits(config) - 1, denominator or exact_slope_bits(config)
+        hit = {"valid": 1, "at_mirror": 1, "numerator": numerator, "denominator": denominator}
+        cell = {"axis": AXIS_BITS * config.patterns, "cell": CELL_BITS * config.patterns}
+        super().__init__({**hit, **cell, "index": index_bits(config)})
 
 
 class Winner(Record):
     """The rectangle that a ray sees, if `valid`; at_mirror: as in `Candidate`."""
 
-    def __init__(self, index_width: int):
-        super().__init__({"valid": 1, "at_mirror": 1, "index": index_width})
-
-
-def winner_of(config: Configuration) -> Winner:
-    """Return a `Winner` sized for this configuration."""
-    return Winner(index_bits(config))
+    def __init__(self, config: Configuration):
+        super().__init__({"valid": 1, "at_mirror": 1, "index": index_bits(config)})
 
 
 class Seen(Record):
     """The rectangle that a ray sees, if `found`: its colour and, if mirrors mix, the share that it mirrors."""
 
-    def __init__(self, mixes: bool = False):
+    def __init__(self, config: Configuration):
+        mixes = config.materials and config.reflections > 0
         super().__init__({"found": 1, "mirror": MIRROR_BITS * mixes, "colour": RGB_BITS})
-
-
-def seen_of(config: Configuration) -> Seen:
-    """Return a `Seen` sized for this configuration; without reflections, nothing mixes."""
-    return Seen(config.materials and config.reflections > 0)
 
 
 class Shade(Record):
     """A ray's contribution to its pixel: a `Colour` and, if mirrors mix, the share of the colour behind it."""
 
-    def __init__(self, mixes: bool = False):
-        super().__init__({"mirror": MIRROR_BITS * mixes} | Colour().layout)
-
-
-def shade_of(config: Configuration) -> Shade:
-    """Return a `Shade` sized for this configuration."""
-    return Shade("mirror" in seen_of(config).layout)
+    def __init__(self, config: Configuration):
+        super().__init__({"mirror": Seen(config).layout.get("mirror", 0)} | Colour().layout)
 
 
 class CellDivision(Record):
@@ -345,5 +286,5 @@ class CellDivision(Record):
 class Sight(Record):
     """The rectangle that a ray sees, if `valid`, and the hit's pattern cell: odd_u, odd_v as in `pattern_colour`."""
 
-    def __init__(self, index_width: int):
-        super().__init__({"valid": 1, "odd_u": 1, "odd_v": 1, "index": index_width})
+    def __init__(self, config: Configuration):
+        super().__init__({"valid": 1, "odd_u": 1, "odd_v": 1, "index": index_bits(config)})

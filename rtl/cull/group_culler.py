@@ -7,7 +7,7 @@ from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit, signed, tied, unsigned
 from raycaster.rtl.common.interfaces import Direction, Place, Rects
 from raycaster.rtl.common.records import Facet, Walk, WideRect
-from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, walk_bits, wide_walk_bits
+from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, wide_walk_bits
 from raycaster.rtl.cull.group_tester import group_tester
 from raycaster.rtl.cull.rect_copy import rect_copy
 from raycaster.rtl.engine.rect_setup import rect_setup
@@ -55,7 +55,7 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
 
     copy = Rects(config, usable=rects.usable, rect=WideRect())
     load, found = unsigned(rectangles), unsigned(rectangles)
-    facet, growth, start = Facet(walk_bits(config), bare=True), Walk(WIDE_BITS), Walk(wide_walk_bits(config))
+    facet, growth, start = Facet(config, bare=True), Walk(config, WIDE_BITS), Walk(config, wide_walk_bits(config))
 
     copies = rect_copy(clk, rects=rects, copy=copy, margin=config.facts.margin, config=config)
     sweep = rect_setup(

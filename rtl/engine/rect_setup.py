@@ -63,7 +63,7 @@ def rect_setup(
     number_0, number_1, number_2 = (unsigned(index_bits(config)) for _ in range(3))
     at_hand_2, usable_2 = bit(), bit()
     axis_2 = unsigned(AXIS_BITS)
-    look_2 = Look(config.materials, config.patterns)
+    look_2 = Look(config)
     distance_2 = signed(DISTANCE_BITS)
     to_low_p_2, to_high_p_2, to_low_q_2, to_high_q_2 = (signed(bound_bits) for _ in range(4))
     slope_a_2, slope_p_2, slope_q_2 = (signed(slope_bits) for _ in range(3))

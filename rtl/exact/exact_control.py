@@ -6,7 +6,7 @@ from myhdl import always, always_comb, block, instances
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unconnected, unsigned
 from raycaster.rtl.common.interfaces import ShadowPass
-from raycaster.rtl.common.records import surface_of
+from raycaster.rtl.common.records import Surface
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 from raycaster.rtl.exact.shadow_sequencer import shadow_sequencer
 
@@ -44,7 +44,7 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
         config: the design.
     """
     in_flight = unsigned(WRITE_AT + 1 + (PATTERN_LATENCY if config.patterns else 0))
-    first, second = surface_of(config), surface_of(config)
+    first, second = Surface(config), Surface(config)
     # Unless the scene is fixed, a shadow pass wants the same rectangles as a reflection.
     shadow_pass = ShadowPass(comes_next=None if config.fixed else unconnected(1))
     from_light = bit() if config.light else tied(0, 1)

@@ -5,7 +5,7 @@ from myhdl import Signal, always, always_comb, always_seq, block, concat, instan
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, side_by_side, signed, tied, unsigned
-from raycaster.rtl.common.records import rect_of
+from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import WORD_BITS, index_bits
 from raycaster.rtl.scene.rect_slot import rect_slot
 from raycaster.rtl.scene.rect_sorter import rect_sorter
@@ -59,7 +59,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     bank = unsigned(BANK_BITS)
     kept_0, kept_1 = bit(), bit()
 
-    sorted_rect = rect_of(config)
+    sorted_rect = Rect(config)
     banks = [unsigned(len(sorted_rect.word)) for _ in range(BANKS << index_width)]
     write_address, read_address = (unsigned(BANK_BITS + index_width) for _ in range(2))
 
@@ -216,7 +216,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
                 rects.rect.word.next = banks[read_address]
 
     else:
-        fetched = rect_of(config)
+        fetched = Rect(config)
 
         @always(clk.posedge)
         def fetch():

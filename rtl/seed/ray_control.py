@@ -6,7 +6,7 @@ from myhdl import always, always_comb, block, instances
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unsigned
 from raycaster.rtl.common.interfaces import ShadowPass
-from raycaster.rtl.common.records import rect_of
+from raycaster.rtl.common.records import Rect
 from raycaster.rtl.engine.ray_sequencer import ends_early, ray_sequencer
 
 LOAD_AT = 2
@@ -48,7 +48,7 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
     in_flight = unsigned(write_at + 1)
     none_towards = bit()
     early_out = bit() if ends_early(config) else tied(0, 1)
-    dividing = rect_of(config)
+    dividing = Rect(config)
 
     sequencer = ray_sequencer(
         clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, picture=picture, rects=rects, steps=steps,

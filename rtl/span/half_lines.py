@@ -7,7 +7,7 @@ from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.signals import Signed, bit, signed, tied, unsigned
 from raycaster.rtl.common.by_axis import along_a, along_u, along_v, by_axis
 from raycaster.rtl.common.magnitude import magnitude
-from raycaster.rtl.common.records import rect_of
+from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import AXIS_BITS, column_bits, eye_bits, index_bits, line_factor_bits
 from raycaster.rtl.span.records import AHEAD, BEYOND, NUMBER_BITS, U_HIGH, U_LOW, V_HIGH, V_LOW
 
@@ -72,7 +72,7 @@ def half_lines(
     last_number = unsigned(NUMBER_BITS) if mirrors else tied(V_HIGH, NUMBER_BITS)
     mirror_axis = unsigned(AXIS_BITS) if mirrors else tied(0, AXIS_BITS)
     mirror_distance = signed(factor_bits) if mirrors else tied(0, Signed(factor_bits))
-    rect_1, entry_1 = rect_of(config), entry.twin()
+    rect_1, entry_1 = Rect(config), entry.twin()
     axis_u, axis_v, axis_w, axis_1, axis_2 = (unsigned(AXIS_BITS) for _ in range(5))
     on_u, low, met, back_w, back_1, back_2, strict, half_line = (bit() for _ in range(8))
     bound = unsigned(COORDINATE_BITS)

@@ -11,7 +11,7 @@ from raycaster.hdl.signals import bit, unsigned
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.registers import address_bits
 from raycaster.rtl.bus.buses import BRIDGES
-from raycaster.rtl.common.interfaces import AvalonPort, Vga, vga_of
+from raycaster.rtl.common.interfaces import AvalonPort, Vga
 from raycaster.rtl.dvi.tmds_encoder import SYMBOL_BITS
 from raycaster.rtl.system.scene_player import BUTTONS
 
@@ -21,12 +21,12 @@ def module_ports(config: Configuration) -> dict[str, Any]:
     interface = BRIDGES[config.bus].interface if config.bus in BRIDGES else AvalonPort
     ports = {"clk": bit(), "reset": ResetSignal(0, active=1, isasync=False), "avs_s0": None}
     ports |= {BUSES[config.bus].port: interface(address_bits(config.table))}
-    return ports | {"irq": bit(), "vga": vga_of(config)}
+    return ports | {"irq": bit(), "vga": Vga(config.port_bits)}
 
 
 def scene_system_ports(config: Configuration) -> dict[str, Any]:
     """Return the ports of scene_system."""
-    return {"clk": bit(), "ready": bit(), "buttons": unsigned(len(BUTTONS)), "vga": vga_of(config)}
+    return {"clk": bit(), "ready": bit(), "buttons": unsigned(len(BUTTONS)), "vga": Vga(config.port_bits)}
 
 
 def system_ports(config: Configuration) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from raycaster.rtl.bus.avalon_interface import avalon_interface
 from raycaster.rtl.bus.buses import BRIDGES
 from raycaster.rtl.common.clock_gate import clock_gate
 from raycaster.rtl.common.interfaces import AvalonPort, Picture, Progress, Rects, SceneBus
-from raycaster.rtl.common.records import camera_of
+from raycaster.rtl.common.records import Camera
 from raycaster.rtl.common.widths import REFLECTION_BITS, RGB_BITS, WORD_BITS
 from raycaster.rtl.engines import engine_of
 from raycaster.rtl.scene.camera_mem import camera_mem
@@ -39,7 +39,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
     """
     fixed, camera_fixed = config.fixed, bool(config.fixed and config.fixed.camera)
     bus = SceneBus(address_bits(config.table), is_read=not camera_fixed)
-    camera, progress = camera_of(config), Progress()
+    camera, progress = Camera(config), Progress()
     camera_readback, rect_readback = unsigned(WORD_BITS), unsigned(WORD_BITS)
     bad_rectangle = bit()
     resting = config.facts.line_buffered and not fixed

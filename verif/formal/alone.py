@@ -33,7 +33,6 @@ from raycaster.rtl.common.records import (
     RoomImage,
     Signs,
     Walk,
-    rect_of,
 )
 from raycaster.rtl.common.widths import LANES, WORD_BITS
 from raycaster.rtl.exact.rect_tester import rect_tester
@@ -92,10 +91,10 @@ class TesterAlone(Alone):
 
     def blocks(self) -> Iterator[Any]:
         """Elaborate the test."""
-        distance = self._eye - 1
+        distance, design = self._eye - 1, configure(engine="exact", reflections=self.reflections)
         yield rect_tester(
-            clk=bit(), steps=Steps(), rect=Rect(self.coordinate), eye=Eye(self._eye), signs=Signs(),
-            slope=Slope(self.coordinate), mirror=Mirror(distance, self.reflections > 1), hit=bit(), at_mirror=bit(),
+            clk=bit(), steps=Steps(), rect=Rect(design, self.coordinate), eye=Eye(self._eye), signs=Signs(),
+            slope=Slope(self.coordinate), mirror=Mirror(design, distance), hit=bit(), at_mirror=bit(),
             numerator=unsigned(distance), denominator=unsigned(self.coordinate),
         )  # fmt: skip
 
@@ -124,16 +123,16 @@ class FoldAlone(Alone):
     def blocks(self) -> Iterator[Any]:
         """Elaborate the fold and both testers."""
         distance, shift, widths = self.coordinate + 1, self.coordinate + 2, self.facts()
-        product = widths["WALK_BITS"]
-        fold = Fold(widths["FOLD_BITS"], product, shift, distance)
+        product, design = widths["WALK_BITS"], configure(engine="beam", rectangles=1)
+        fold = Fold(design, widths["FOLD_BITS"], product, shift, distance)
         yield ray_fold(
-            bit(), before=RoomImage(shift), last=Reflector(distance), slope=Direction(self.slope + 1), fold=fold
+            bit(), before=RoomImage(design, shift), last=Reflector(distance), slope=Direction(self.slope + 1), fold=fold
         )  # fmt: skip
         for tester in (ray_tester, partial(fold_tester, fold=fold)):
             yield tester(
-                bit(), step_way=bit(), step_bounds=bit(), step_slope=bit(), facet=Facet(product, distance),
-                walk=Walk(product), signs=Signs(), slope=Slope(self.slope), index=bit(),
-                hit=Candidate(widths["NUMERATOR_BITS"], self.slope, 1), staged=self.staged,
+                bit(), step_way=bit(), step_bounds=bit(), step_slope=bit(), facet=Facet(design, product, distance),
+                walk=Walk(design, product), signs=Signs(), slope=Slope(self.slope), index=bit(),
+                hit=Candidate(design, widths["NUMERATOR_BITS"], self.slope), staged=self.staged,
             )  # fmt: skip
 
 
@@ -245,7 +244,7 @@ class TableAlone(Alone):
             for index in range(general.table)
             for name in ("corner_0", "corner_1", "surface")
         } | {
-            "RECT_BITS": len(rect_of(fixed).word),
+            "RECT_BITS": len(Rect(fixed).word),
             "LATENCY": fixed.facts.rect_latency,
             "CORNER_BITS": CORNER.implemented,
             "SURFACE_BITS": surface_mask(general),

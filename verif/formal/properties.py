@@ -42,7 +42,7 @@ from raycaster.rtl.beam.latencies import (
 )
 from raycaster.rtl.common import widths
 from raycaster.rtl.common.interfaces import AIM_CYCLES
-from raycaster.rtl.common.records import camera_of, candidate_of, look_fields, mirror_of, rect_of, surface_of
+from raycaster.rtl.common.records import Camera, Candidate, Mirror, Rect, Surface, look_fields
 from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
 from raycaster.rtl.engines import ENGINES, SEED, engine_of
 from raycaster.screens import Screen
@@ -148,14 +148,14 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
     "AIM_CYCLES": lambda config: AIM_CYCLES,
     "STEEPEST": widths.steepest_slope,
     "CYCLE_BITS": lambda config: bits_for(engine_of(config).rect_cycles(config)),
-    "LOOK_BITS": lambda config: sum(look_fields(config.materials, config.patterns).values()),
-    "CAMERA_BITS": lambda config: len(camera_of(config).word),
-    "RECT_BITS": lambda config: len(rect_of(config).word),
-    "SURFACE_BITS": lambda config: len(surface_of(config).word),
-    "MIRROR_BITS": lambda config: len(mirror_of(config).word),
-    "CANDIDATE_BITS": lambda config: len(candidate_of(config).word),
-    "NUMERATOR_BITS": lambda config: len(candidate_of(config).numerator),
-    "DENOMINATOR_BITS": lambda config: len(candidate_of(config).denominator),
+    "LOOK_BITS": lambda config: sum(look_fields(config).values()),
+    "CAMERA_BITS": lambda config: len(Camera(config).word),
+    "RECT_BITS": lambda config: len(Rect(config).word),
+    "SURFACE_BITS": lambda config: len(Surface(config).word),
+    "MIRROR_BITS": lambda config: len(Mirror(config).word),
+    "CANDIDATE_BITS": lambda config: len(Candidate(config).word),
+    "NUMERATOR_BITS": lambda config: len(Candidate(config).numerator),
+    "DENOMINATOR_BITS": lambda config: len(Candidate(config).denominator),
 }  # fmt: skip
 """Numbers of a design, by the names that they have in wrappers."""
 

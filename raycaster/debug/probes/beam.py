@@ -247,15 +247,15 @@ class BeamProbes(Description):
     def probes(self) -> list[Probe]:
         """Probes in the order in which values depend on each other."""
         config = self.config
-        facet, walk = records.facet_of(config), records.walk_of(config)
+        facet, walk = records.Facet(config), records.Walk(config)
         sight = (records.Sight if config.patterns else records.Winner)(index_bits(config))
         last, passes = beam.rounds(config) - 1, len(self.starts)
         start, lead = fields(SETUP, "start", walk.layout, walk), -beam.fold_lead(config)
         moving = AXES if config.turn else "y"
         way = "way p, q" if config.turn else "way p"
         along = tuple(f"{{walker}}.way_{side}" for side in "pq"[: 1 + config.turn])
-        candidate, fold, reflector = records.candidate_of(config), records.fold_of(config), records.Reflector()
-        look = records.Look(config.materials, config.patterns)
+        candidate, fold, reflector = records.Candidate(config), records.Fold(config), records.Reflector()
+        look = records.Look(config)
         rounds = [
             Probe("nearest of some", fields("{beam}", f"{{round_{turn}}}", ("valid", "index"), candidate),
                 f"round {turn}", nearest_of(2 << turn), shown=False)
@@ -278,7 +278,7 @@ class BeamProbes(Description):
         ]  # fmt: skip
         return [
             *scene_probes("line", self.config),
-            rect_probe("rectangle", f"{DUT}.rect_mem_i", "rects_rect", records.rect_of(config), "fetch", indexed,
+            rect_probe("rectangle", f"{DUT}.rect_mem_i", "rects_rect", records.Rect(config), "fetch", indexed,
                 late=2),
             *(self._aim_probes() if config.turn else []),
             rect_probe("set up", SETUP, "facet", facet, "load", indexed, more=setup_facet),
@@ -305,7 +305,7 @@ class BeamProbes(Description):
             Probe("its colour", fields("{look}", "look", ("colour",), look), "blend",
                 Ray.found_colour, colour=True),
             *(self._pattern_probes() if config.patterns else []),
-            Probe("colour seen", fields("{seen}", "shade", COLOURS, records.shade_of(config)), "blend",
+            Probe("colour seen", fields("{seen}", "shade", COLOURS, records.Shade(config)), "blend",
                 seen_channels, late=1, parts=COLOURS),
             *([self._joined()] if passes > 1 else []),
             Probe("pixel", fields(BLEND, "pixel", COLOURS, records.Pixel(config.colour_bits)), "done", Ray.channels,
@@ -316,7 +316,7 @@ class BeamProbes(Description):
     def _aim_probes(self) -> list[Probe]:
         """Probes of a turned camera's line: its first ray, the change per column, and the products with that."""
         aim = tuple(f"{CASTER}.line_starter_i.aim_{axis}" for axis in AXES)
-        walk = records.walk_of(self.config)
+        walk = records.Walk(self.config)
         return [
             Probe("first ray of the row", aim, "load", lambda ray, _: first_slope(ray), signed=True, shown=False,
                 parts=AXES),

@@ -11,7 +11,7 @@ from raycaster.debug.probes import AXES, fields
 from raycaster.debug.probes.ray import Place, Probe, Ray, Read, Value
 from raycaster.debug.probes.units import SIGNS, UnitProbes, indexed, rect_probe
 from raycaster.output import printable
-from raycaster.rtl.common.records import Signs, mirror_of, surface_of
+from raycaster.rtl.common.records import Mirror, Signs, Surface
 from raycaster.scene import Light
 
 
@@ -124,7 +124,7 @@ class ExactProbes(UnitProbes):
     def probes(self) -> list[Probe]:
         """Probes in the order in which values depend on each other."""
         memory, tester, keeper = (f"{self.unit}.{name}_i" for name in ("eye_register", "rect_tester", "nearest_hit"))
-        surface, left = surface_of(self.config), mirror_of(self.config)
+        surface, left = Surface(self.config), Mirror(self.config)
         mirror_fields = ("active", "axis", "distance", *(name for name in left.layout if name.startswith("met_")))
         t = tuple(f"{tester}.{name}" for name in ("numerator", "denominator"))
         nearest_t = tuple(f"{keeper}.found_{name}" for name in ("distance", "slope"))

@@ -13,7 +13,7 @@ from raycaster.debug.probes.ray import Number, Place, Probe, Ray, Read, Value, p
 from raycaster.debug.probes.units import SIGNS, UnitProbes, indexed, rect_probe
 from raycaster.golden.colour import hit_colours
 from raycaster.golden.world import OTHER_AXES
-from raycaster.rtl.common.records import Origin, rect_of
+from raycaster.rtl.common.records import Origin, Rect
 from raycaster.rtl.common.records import Ray as RayRecord
 
 
@@ -139,7 +139,7 @@ class SeedProbes(UnitProbes):
             Probe("signs", fields(self.unit, "ray", SIGNS, ray), "ray", Ray.slope_signs, late=1, parts=AXES),
             Probe("towards the plane", of_helpers("towards"), "find", towards, late=1, shown=False),
             Probe("product", of_helpers("product"), "load", products, shown=False),
-            rect_probe("rectangle at the end", self.control, "offered", rect_of(self.config), "store", indexed, late=1),
+            rect_probe("rectangle at the end", self.control, "offered", Rect(self.config), "store", indexed, late=1),
             Probe("quotient u, v", of_helpers("divider_i.quotient"), "store", of_rectangle("quotients", "valid"),
                 late=1, scale=True),
             Probe("valid", of_helpers("valid"), "store", lambda ray, place: ray.of_rectangle(place, "valid"), late=1,

@@ -13,7 +13,7 @@ from raycaster.debug.waves import Samples, signed
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed
 from raycaster.rtl.common.interfaces import AIM_CYCLES
-from raycaster.rtl.common.records import Pixel, Signs, camera_of, rect_of
+from raycaster.rtl.common.records import Camera, Pixel, Rect, Signs
 
 RENDERER = f"{DUT}.ray_caster_renderer_i"
 SIGNS = ("dx", "dy", "dz")
@@ -88,7 +88,7 @@ def share(ray: Ray, place: Place) -> Sequence[int]:
 def scene_probes(event: str, config: Configuration) -> list[Probe]:
     """Probes of the scene's registers, from an event on."""
     bus = f"{DUT}.avalon_interface_i.picture"
-    record = camera_of(config)
+    record = Camera(config)
     names = list(record.layout)
 
     def camera(ray: Ray, place: Place) -> Sequence[Value]:
@@ -311,7 +311,7 @@ class UnitProbes(Description):
             Probe("slope, signs", signs, "start", Ray.slope_signs, late=1, parts=AXES),
             Probe("comes from the camera", (f"{self.sequencer}.steps_initial_ray",), "ray",
                 lambda _, place: (int(place.bounce == 0),), late=1, shown=False),
-            rect_probe("rectangle", rects, "rects_rect", rect_of(self.config), "fetch", indexed, late=1),
+            rect_probe("rectangle", rects, "rects_rect", Rect(self.config), "fetch", indexed, late=1),
             *([culling] if self.config.culling else []),
         ]  # fmt: skip
 

@@ -18,7 +18,7 @@ from raycaster.golden.exact import ExactModel
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.beam.latencies import TESTER_LATENCY, fold_lead, is_staged, slope_at
-from raycaster.rtl.common.records import candidate_of, facet_of, stride_of, walk_of
+from raycaster.rtl.common.records import Candidate, Facet, Walk, stride_of
 from raycaster.rtl.common.widths import steepest_slope, walk_bits
 from raycaster.verif.random_world import random_basis, random_camera, random_rectangles
 
@@ -203,7 +203,7 @@ def folded(camera, slope, mirrors) -> dict[str, int]:
 
 def check_tester(leaf_of: Callable[..., Bench], block: Callable, config: Configuration, random: np.random.Generator):
     """Test mirrored rays if the block has a port for their fold, otherwise rays from the camera."""
-    leaf = leaf_of(block, config, hit=lambda: candidate_of(config), staged=is_staged(config))
+    leaf = leaf_of(block, config, hit=lambda: Candidate(config), staged=is_staged(config))
     folds = "fold_axis" in leaf.given
     lead = fold_lead(config) if folds else 0
     strobes = ("step_way", "step_bounds", "step_slope")
@@ -254,7 +254,7 @@ def check_tester(leaf_of: Callable[..., Bench], block: Callable, config: Configu
 @cache
 def candidate_limits(config: Configuration) -> tuple[int, int]:
     """Return the greatest numerator and denominator."""
-    candidate = candidate_of(config)
+    candidate = Candidate(config)
     return tuple((1 << len(signal)) - 1 for signal in (candidate.numerator, candidate.denominator))
 
 
@@ -307,7 +307,7 @@ def first_of(config: Configuration, candidates) -> dict[str, int]:
 
 def any_facets(random: np.random.Generator, config: Configuration) -> tuple[list[dict[str, int]], int]:
     """Return the fields of random facets, and all facets packed side by side."""
-    record = facet_of(config)
+    record = Facet(config)
     facets = [
         {name: int(random.integers(1 << bits)) for name, bits in record.layout.items()}
         for _ in range(config.rectangles)
@@ -385,7 +385,7 @@ def row_ports(config: Configuration, table: Rectangles, camera, slopes) -> tuple
 
     slopes: of the lane's first column, and of the lane's next column to the right.
     """
-    facet, growth = facet_of(config), stride_of(config)
+    facet, growth = Facet(config), stride_of(config)
     begin: list[dict[str, int]] = [{"start_line": 1}]
     facets = growths = 0
     for index in range(config.rectangles):
@@ -413,4 +413,4 @@ def any_view(random: np.random.Generator, config: Configuration) -> np.ndarray:
 def row_ports_of(config: Configuration) -> dict[str, Any]:
     """Return the signals that carry a row's set-up to a lane and to each of its passes, as for `leaf_of`."""
     growths = config.rectangles * len(stride_of(config).word)
-    return {"load": config.rectangles, "start": lambda: walk_of(config), "growths": growths}
+    return {"load": config.rectangles, "start": lambda: Walk(config), "growths": growths}

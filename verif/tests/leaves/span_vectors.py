@@ -19,7 +19,7 @@ from raycaster.golden.spans import row_slope as golden_slope
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.hdl.signals import bit, tied, unsigned
 from raycaster.rtl.common.interfaces import Direction, Rects
-from raycaster.rtl.common.records import rect_of
+from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import column_bits, index_bits, level_bits, span_slope_bits, step_bits
 from raycaster.rtl.span.entry_table import entry_table
 from raycaster.rtl.span.first_change import first_change
@@ -236,7 +236,7 @@ def chain_ports(config: Configuration) -> dict[str, Any]:
     """Return the ports of `chain_bench`, as `leaf_of` takes them."""
     width, entries = column_bits(config), ("given", "winner", "entry", "heir")
     return {
-        "number": index_bits(config), "stored": lambda: rect_of(config), "usable": config.rectangles,
+        "number": index_bits(config), "stored": lambda: Rect(config), "usable": config.rectangles,
         "slope": lambda: Direction(span_slope_bits(config)), "step": lambda: Direction(step_bits(config)),
         "chain": lambda: ChainRecord(config), "column": width, "count": count_bits(config), "swept_stop": width,
         **{name: lambda: Entry(config) for name in entries},

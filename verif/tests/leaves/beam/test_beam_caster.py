@@ -12,7 +12,7 @@ from raycaster.golden.rays import primary_slopes
 from raycaster.hdl.signals import Signed
 from raycaster.rtl.beam.beam_caster import beam_caster
 from raycaster.rtl.beam.latencies import AIM_LATENCY, beam_latency, start_cycles
-from raycaster.rtl.common.records import shown_of
+from raycaster.rtl.common.records import Pixel
 from raycaster.rtl.common.widths import factor_bits
 from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
 from raycaster.scene import UNTURNED
@@ -58,7 +58,7 @@ ALL = {"turn": True, "materials": True, "patterns": True}
     ids=config_id,
 )
 def test_beam_caster(config, lines, leaf_of, random):
-    leaf = leaf_of(beam_caster, config, row_slope=Signed(factor_bits(config)), pixel=lambda: shown_of(config))
+    leaf = leaf_of(beam_caster, config, row_slope=Signed(factor_bits(config)), pixel=lambda: Pixel(config.port_bits))
     slopes, basis, horizon_row = primary_slopes(config.screen_geometry), UNTURNED, config.screen_geometry.horizon_row
     # If the camera can turn, the rectangles are set up once per lane, and once more.
     sweep = SETUP_LATENCY + config.rectangles - 1

@@ -9,7 +9,7 @@ from vectors import designs
 
 from raycaster.rtl.beam.colour_blend import colour_blend
 from raycaster.rtl.beam.latencies import blend_latency, mixes
-from raycaster.rtl.common.records import seen_of
+from raycaster.rtl.common.records import Seen
 from raycaster.rtl.common.widths import RGB_BITS
 
 
@@ -24,7 +24,7 @@ from raycaster.rtl.common.widths import RGB_BITS
     beam_config(reflections=0, materials=True),
 )
 def test_colour_blend(config, leaf_of, random):
-    rays, record = config.reflections + 1, seen_of(config)
+    rays, record = config.reflections + 1, Seen(config)
     leaf = leaf_of(colour_blend, config, seen=rays * len(record.word))
     latency, background, reflections = blend_latency(config), 0x123456, 0
     for number in range(3000):

@@ -6,14 +6,14 @@ from vectors import by
 
 from raycaster.configuration import MOST_REFLECTIONS
 from raycaster.rtl.beam.colour_seen import colour_seen
-from raycaster.rtl.common.records import shade_of
+from raycaster.rtl.common.records import Shade
 from raycaster.rtl.common.widths import RGB_BITS
 
 
 @by(number=[0, 1, 3], materials=[False, True])
 def test_colour_seen(materials, number, leaf_of, random):
     config = beam_config(reflections=4, materials=materials)
-    leaf = leaf_of(colour_seen, config, shade=lambda: shade_of(config), number=number)
+    leaf = leaf_of(colour_seen, config, shade=lambda: Shade(config), number=number)
     shade = {}
     for _ in range(400):
         reached, hit = int(random.integers(2)), int(random.random() < 0.7)

@@ -6,12 +6,12 @@ from vectors import any_place, designs, named
 
 from raycaster.golden.rays import primary_slopes
 from raycaster.rtl.beam.lane_start import lane_start
-from raycaster.rtl.common.records import growth_of, walk_of
+from raycaster.rtl.common.records import Walk, growth_of
 
 
 @designs(beam_config(screen="tiny", pixels=2), beam_config(rows=180, scale=6, pixels=2))
 def test_lane_start(config, leaf_of, random):
-    walks = dict.fromkeys(("first_start", "second_start"), lambda: walk_of(config))
+    walks = dict.fromkeys(("first_start", "second_start"), lambda: Walk(config))
     loads = dict.fromkeys(("load", "late_load"), config.rectangles)
     leaf = leaf_of(lane_start, config, **walks, **loads, growth=lambda: growth_of(config))
     slopes = primary_slopes(config.screen_geometry)

@@ -6,14 +6,13 @@ from beam_vectors import any_facets, beam_config
 from vectors import named
 
 from raycaster.rtl.beam.look_up import look_up
-from raycaster.rtl.common.records import Sight, winner_of
-from raycaster.rtl.common.widths import index_bits
+from raycaster.rtl.common.records import Sight, Winner
 
 
 @pytest.mark.parametrize("looks", [{}, {"materials": True, "patterns": True}], ids=["plain", "looks"])
 def test_look_up(looks, leaf_of, random):
     config = beam_config(screen="tiny", rectangles=5, **looks)
-    sights = {"sight": lambda: Sight(index_bits(config)) if config.patterns else winner_of(config)}
+    sights = {"sight": lambda: Sight(config) if config.patterns else Winner(config)}
     leaf = leaf_of(look_up, config, **sights)
     kept = None
     for _ in range(400):

@@ -5,14 +5,14 @@ import pytest
 from beam_vectors import CANDIDATE, any_candidate, beam_config, close_candidates, first_of
 
 from raycaster.rtl.beam.nearest_of import nearest_of
-from raycaster.rtl.common.records import candidate_of
+from raycaster.rtl.common.records import Candidate
 
 
 @pytest.mark.parametrize(("count", "contest"), [(1, 2), (2, 2), (3, 2), (5, 2), (8, 2), (12, 2), (1, 3), (7, 3)])
 def test_nearest_of(count, contest, leaf_of, random):
     config = beam_config(rectangles=count)
     rounds = max(1, (count - 1).bit_length())
-    record = candidate_of(config)
+    record = Candidate(config)
     bits = len(record.word)
     leaf = leaf_of(nearest_of, config, candidates=count * bits, rounds=rounds, latency=contest)
     for _ in range(1200):

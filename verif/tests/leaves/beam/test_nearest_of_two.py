@@ -5,13 +5,13 @@ from beam_vectors import any_candidate, by_screen, candidate_ports, close_candid
 
 from raycaster.rtl.beam.latencies import contest_latency
 from raycaster.rtl.beam.nearest_of_two import nearest_of_two
-from raycaster.rtl.common.records import candidate_of
+from raycaster.rtl.common.records import Candidate
 
 
 @by_screen
 def test_nearest_of_two(config, leaf_of, random):
     latency = contest_latency(config)
-    both = dict.fromkeys(("first", "second"), lambda: candidate_of(config))
+    both = dict.fromkeys(("first", "second"), lambda: Candidate(config))
     leaf = leaf_of(nearest_of_two, config, **both, latency=latency)
     pairs = [(any_candidate(random, config), any_candidate(random, config)) for _ in range(leaf.some(3000))]
     pairs += [close_candidates(random, config) for _ in range(leaf.some(1000))]

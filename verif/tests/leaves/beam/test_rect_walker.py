@@ -7,14 +7,14 @@ from beam_vectors import by_screen, flat_tables, products, row_slopes
 from vectors import any_place, named
 
 from raycaster.rtl.beam.rect_walker import rect_walker
-from raycaster.rtl.common.records import stride_of, walk_of
+from raycaster.rtl.common.records import Walk, stride_of
 
 
 @pytest.mark.slow_sets("beam-vga")
 @by_screen
 def test_rect_walker(config, leaf_of, random):
-    walks = {"start": lambda: walk_of(config), "growth": lambda: stride_of(config)}
-    leaf, names = leaf_of(rect_walker, config, **walks), list(walk_of(config).layout)
+    walks = {"start": lambda: Walk(config), "growth": lambda: stride_of(config)}
+    leaf, names = leaf_of(rect_walker, config, **walks), list(Walk(config).layout)
     columns = config.screen_geometry.columns // config.pixels
     for line in range(300):
         steps = columns if line < 3 else 8

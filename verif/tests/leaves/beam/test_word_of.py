@@ -5,12 +5,12 @@ from beam_vectors import any_facets, beam_config
 from vectors import named
 
 from raycaster.rtl.beam.word_of import word_of
-from raycaster.rtl.common.records import facet_of
+from raycaster.rtl.common.records import Facet
 
 
 def test_word_of(leaf_of, random):
     config = beam_config(screen="tiny", rectangles=1)
-    leaf = leaf_of(word_of, record=lambda: facet_of(config), word=len(facet_of(config).word))
+    leaf = leaf_of(word_of, record=lambda: Facet(config), word=len(Facet(config).word))
     for _ in range(50):
         [facet], word = any_facets(random, config)
         leaf.case(named("record", facet), {"word": word})

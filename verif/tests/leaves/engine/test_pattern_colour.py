@@ -5,6 +5,7 @@ from itertools import product
 
 from vectors import named
 
+from raycaster.design.decide import configure
 from raycaster.rtl.common.records import Look
 from raycaster.rtl.common.widths import RGB_BITS
 from raycaster.rtl.engine.pattern_colour import pattern_colour
@@ -12,7 +13,7 @@ from raycaster.scene import PATTERNS
 
 
 def test_pattern_colour(leaf_of, random):
-    leaf = leaf_of(pattern_colour, look=lambda: Look(materials=True, patterns=True), colour=RGB_BITS)
+    leaf = leaf_of(pattern_colour, look=lambda: Look(configure(materials=True, patterns=True)), colour=RGB_BITS)
     for kind, odd_u, odd_v in product(range(len(PATTERNS)), range(2), range(2)):
         second = (0, (odd_u + odd_v) % 2, odd_v, odd_u)[kind]
         for colours in ((0, (1 << RGB_BITS) - 1), ((1 << RGB_BITS) - 1, 0), random.integers(1 << RGB_BITS, size=2)):

@@ -47,7 +47,7 @@ def test_rect_setup(config, leaf_of, random, in_adders=False):
             leaf.case({**held, **sorted_rect(table, index, "rects_rect", config)})
             now, then = (products(table, index, camera, column) for column in (slope, slope + [0, 1, 0]))
             looks = sorted_rect(table, index, "", config)
-            facet = {name: looks[f"_{name}"] for name in Look(config.materials, config.patterns).layout}
+            facet = {name: looks[f"_{name}"] for name in Look(config).layout}
             facet |= {"usable": table.enabled[index], "axis": table.axes[index], "distance": now["distance"]}
             wanted = named("facet", facet) | named("start", {name: now[name] for name in WALK})
             wanted |= {"start_way_q" if config.turn else "facet_way_q": now["way_q"]}

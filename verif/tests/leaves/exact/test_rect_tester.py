@@ -9,7 +9,6 @@ from vectors import LAST, by_axis, by_reflections, by_turn, exact_config, named,
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.world import Rectangles
-from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import exact_slope_bits, eye_bits
 from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.verif.expected import sorted_rect
@@ -73,7 +72,7 @@ def extreme_rays(config: Configuration):
 def test_rect_tester(reflections, turn, leaf_of, random):
     """The hit and its t; after two mirrors in one point, also hits in that point and at_mirror."""
     config = exact_config(reflections=reflections, turn=turn)
-    leaf = leaf_of(rect_tester, config, rect=Rect)
+    leaf = leaf_of(rect_tester, config)
     distance, seen, corners = 0, set(), set()
     rays = mirrored_rays(random, config, leaf.some(1500))
     for table, chosen, eye, slope, mirror in chain(rays, extreme_rays(config)):

@@ -15,7 +15,7 @@ from raycaster.configuration import Configuration
 from raycaster.golden.picture import describe_difference
 from raycaster.golden.spans import Row, picture_of
 from raycaster.rtl.common.interfaces import Run
-from raycaster.rtl.common.records import rect_of
+from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import index_bits
 from raycaster.scene import load_scene, packaged_scenes
 
@@ -42,7 +42,7 @@ SCENES = {name: scene for name, scene in SCENES.items() if not scene.lacks(DRAWN
 
 def unit_bench(leaf_of, config: Configuration):
     """Make the bench of a unit."""
-    ports = {"number": index_bits(config), "stored": lambda: rect_of(config), "usable": config.rectangles}
+    ports = {"number": index_bits(config), "stored": lambda: Rect(config), "usable": config.rectangles}
     return leaf_of(frame_bench, config, run=lambda: Run(config), **ports)
 
 
