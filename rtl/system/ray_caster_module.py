@@ -38,8 +38,17 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         s_apb: `ApbPort`, this block as the completer; its addresses count bytes.
     """
     fixed, camera_fixed = config.fixed, bool(config.fixed and config.fixed.camera)
+    reflections, background, usable = None, None, None
+    if camera_fixed:
+        reflections, background = tied(config.reflections, REFLECTION_BITS), tied(fixed.background, RGB_BITS)
+    elif not config.facts.line_buffered and config.reflections == 0:
+        reflections = unconnected(REFLECTION_BITS)  # without reflections, it does not read their number
+    if fixed:
+        usable = tied((1 << config.rectangles) - 1, unsigned(config.rectangles))
     bus = SceneBus(address_bits(config.table), is_read=not camera_fixed)
-    camera, progress = Camera(config), Progress()
+    picture = Picture(reflections=reflections, background=background)
+    camera = Camera(config).tie(fixed.camera_fields) if camera_fixed else Camera(config)
+    rects, progress = Rects(config, usable=usable), Progress()
     camera_readback, rect_readback = unsigned(WORD_BITS), unsigned(WORD_BITS)
     bad_rectangle = bit()
     resting = config.facts.line_buffered and not fixed
@@ -47,20 +56,12 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
 
     if fixed:
         rect_readback, bad_rectangle = tied(0, WORD_BITS), tied(0, 1)
-        rects = Rects(config, usable=tied((1 << config.rectangles) - 1, unsigned(config.rectangles)))
         rectangles = rect_rom(clk, rects, config)
     else:
-        rects = Rects(config)
         rectangles = rect_mem(scene_clk, reset, bus, rect_readback, bad_rectangle, rects, config)
     if camera_fixed:
         camera_readback = tied(0, WORD_BITS)
-        camera.tie(fixed.camera_fields)
-        reflections = tied(config.reflections, REFLECTION_BITS)
-        picture = Picture(reflections=reflections, background=tied(fixed.background, RGB_BITS))
     else:
-        # Without reflections, a renderer that is in step with the monitor does not read their number.
-        is_read = config.facts.line_buffered or config.reflections > 0
-        picture = Picture(reflections=None if is_read else unconnected(REFLECTION_BITS))
         position = camera_mem(scene_clk, reset, bus, camera_readback, camera, config)
     if config.bus in BRIDGES:
         avs_s0, name = AvalonPort(len(bus.address)), BUSES[config.bus].port

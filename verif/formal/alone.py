@@ -101,7 +101,7 @@ class TesterAlone(Alone):
 
 @dataclass(frozen=True)
 class FoldAlone(Alone):
-    """`ray_fold` and both testers with narrow coordinates and slopes; `staged` as in `engines.beam.is_staged`."""
+    """`ray_fold` and both testers with narrow coordinates and slopes; `staged` as in `latencies.is_staged`."""
 
     coordinate: int
     slope: int

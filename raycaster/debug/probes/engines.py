@@ -6,6 +6,7 @@ from raycaster.debug.probes.beam import BeamProbes
 from raycaster.debug.probes.exact import ExactProbes
 from raycaster.debug.probes.ray import Description
 from raycaster.debug.probes.seed import SeedProbes
+from raycaster.errors import UserError, listed
 from raycaster.rtl.engines import BEAM, EXACT, SEED, engine_of
 
 DESCRIPTIONS = {SEED: SeedProbes, EXACT: ExactProbes, BEAM: BeamProbes}
@@ -13,5 +14,12 @@ DESCRIPTIONS = {SEED: SeedProbes, EXACT: ExactProbes, BEAM: BeamProbes}
 
 
 def description_of(config: Configuration, unit: int) -> Description:
-    """Return the engine's description for the pixels of a ray unit."""
+    """Return the engine's description for the pixels of a ray unit.
+
+    Raises:
+        UserError: the engine has none.
+    """
+    if engine_of(config) not in DESCRIPTIONS:
+        able = listed([engine.facts.name for engine in DESCRIPTIONS])
+        raise UserError(f"engine: expected {able} for a trace, got {config.engine}, whose signals are not described")
     return DESCRIPTIONS[engine_of(config)](config, unit)
