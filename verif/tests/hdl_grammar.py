@@ -194,7 +194,7 @@ class Expressions:
 
     def part_of(self, value: Value) -> Value:
         """Draw a bit or a slice."""
-        form = self.one_of("bit", "slice", "signed slice", "index", "signed")
+        form = self.one_of("bit", "slice", "signed slice", "index", "signed", "moving slice")
         named = value.text[0] != "(" or self.once_in(8)
         if form == "bit":
             return Value(f"{value.text}[{self.number(0, value.bits - 1)}]", 0, 1)
@@ -204,6 +204,10 @@ class Expressions:
         if form == "signed" and named:
             return full(value.bits, True, f"{value.text}.signed()")
         low = self.number(0, value.bits - 1)
+        if form == "moving slice":
+            width = max(value.bits - low + (1 if self.once_in(6) else -1), 1)  # rarely beyond the last bit
+            at = self.fitted(self.expression(0), full(max((low + 1).bit_length() - 1, 1))).text
+            return full(width, False, f"{value.text}[{at} + {width}:{at}]")
         high = self.number(low + 1, value.bits)
         signed = form == "signed slice" and named
         return full(high - low, signed, f"{value.text}[{high}:{low or ''}]{'.signed()' * signed}")
@@ -271,6 +275,13 @@ class Expressions:
         sign = self.one_of("==", "<", ">", "<=", ">=", "!=")
         return Value(f"({one} {sign} {self.expression(depth).text})", 0, 1)
 
+    def truth(self, depth: int) -> Value:
+        """Draw a comparison, a bit, or two of them joined by an operator of bits."""
+        wide = [value for value in self.scope.values if value.bits > 1]
+        one, other = (f"{self.one_of(*wide).text}[0]" if wide else self.comparison(depth).text for _ in range(2))
+        joined = Value(f"({one} {self.one_of(*'&|^', 'and', 'or')} {other})", 0, 1)
+        return self.one_of(self.comparison(depth), Value(one, 0, 1), joined)
+
     def condition(self) -> str:
         """Draw an expression for its truth."""
         if self.once_in(3):
@@ -284,7 +295,7 @@ class Expressions:
 
     def joined(self, depth: int) -> Value:
         known = [value for value in self.scope.values if value.bits and value.low >= 0]
-        parts = [self.one_of(*known) if known and not self.once_in(3) else self.comparison(depth) for _ in range(2)]
+        parts = [self.one_of(*known) if known and not self.once_in(3) else self.truth(depth) for _ in range(2)]
         return full(sum(part.bits or 1 for part in parts), False, f"concat({', '.join(part.text for part in parts)})")
 
     def call(self, depth: int) -> Value:
@@ -374,11 +385,13 @@ class Block(Expressions):
         whole = full(value.width + self.one_of(0, 1), value.low < 0, name)
         self.scope.values.append(whole)
         lines = [f"{name} = {variable(whole)}", f"{name}[:] = {value.text}"]
-        form = self.one_of("", "", "if", "bit", "+=")
+        form = self.one_of("", "", "if", "bit", "+=", "same" if self.once_in(6) else "")
         if form == "if":
             lines += [f"if {self.condition()}:", f"    {name}[:] = {self.fitted(self.expression(), whole).text}"]
         elif form == "bit" and whole.low == 0:
             lines += [f"{name}[{self.number(0, whole.bits - 1)}] = {self.bit()}"]
+        elif form == "same":
+            lines += [f"{name} = {self.named().text}{self.one_of('', '.val')}"]
         elif form == "+=" and whole.low == 0:
             lines += [f"{name} >>= 1", f"{name} {self.one_of(*'+|^')}= {self.bit()}"]
         return lines
@@ -456,6 +469,8 @@ class Block(Expressions):
         wide = [value.text for value in self.scope.values if value.bits >= 2 * half]
         form = self.one_of("halves", "bits", "half", *["pairs"] * bool(wide))
         one, other = (self.fitted(self.expression(), full(half)).text for _ in range(2))
+        if self.once_in(8):
+            other = f"({one} - 1)"  # may be below 0
         if form == "halves":
             lines = [f"{name}.next[{2 * half}:{half}] = {one}", f"{name}.next[{half}:] = {other}"]
         elif form == "half":
