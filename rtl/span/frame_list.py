@@ -48,7 +48,7 @@ def frame_list(
     pixel_bits = len(shown) // pixels
     place_width = bits_for(2 * entries + 1)
 
-    new_frame, whole, full, upper, shown_run, write, dropped = (bit() for _ in range(7))
+    new_frame, whole, full, upper, view_run, write, dropped = (bit() for _ in range(7))
     offered, take = bit(), bit()
     first, place = unsigned(place_width), unsigned(place_width)
     turn = unsigned(bits_for(units)) if units > 1 else unconnected(1)
@@ -57,7 +57,7 @@ def frame_list(
 
     switch = frame_switch(
         clk, reset, start_screen=scan.start_screen, run=run, whole=whole, full=full, take_scene=take_scene,
-        new_frame=new_frame, stop=stop, upper=upper, shown_run=shown_run, events=events,
+        new_frame=new_frame, stop=stop, upper=upper, view_run=view_run, events=events,
     )  # fmt: skip
     dealer = row_dealer(
         clk, reset=dropped, new_frame=new_frame, room=room, done=done, first_row=first_row, next_row=next_row,
@@ -69,7 +69,7 @@ def frame_list(
         entries=entries,
     )  # fmt: skip
     player = list_player(
-        clk, reset, scan=scan, upper=upper, shown_run=shown_run, write=write, write_place=place, written=entry,
+        clk, reset, scan=scan, upper=upper, view_run=view_run, write=write, write_place=place, written=entry,
         shown=shown, pixels=pixels, entries=entries,
     )  # fmt: skip
 

@@ -9,7 +9,7 @@ SwitchState = enum("WAIT", "BEGIN", "DRAW")
 
 
 @block
-def frame_switch(clk, reset, start_screen, run, whole, full, take_scene, new_frame, stop, upper, shown_run, events):
+def frame_switch(clk, reset, start_screen, run, whole, full, take_scene, new_frame, stop, upper, view_run, events):
     """Show the last whole frame while the next one is drawn into the other list.
 
     A frame that is whole at StartScreen is shown from then on, and the next one begins with the scene that goes live.
@@ -29,7 +29,7 @@ def frame_switch(clk, reset, start_screen, run, whole, full, take_scene, new_fra
         new_frame: output strobe, in the cycle after take_scene; a frame begins.
         stop: output flag; the frame is abandoned in this cycle.
         upper: output flag; the list that is drawn is the upper one, and the other one is shown.
-        shown_run: output flag; run of the frame in view. If it is low, the frame is black, and its list don't care.
+        view_run: output flag; run of the frame in view. If it is low, the frame is black, and its list don't care.
         events: `FrameEvents`; output.
     """
     longest = (1 << len(events.time)) - 1
@@ -73,7 +73,7 @@ def frame_switch(clk, reset, start_screen, run, whole, full, take_scene, new_fra
     def exchange():
         if hands_over:
             upper.next = not upper
-            shown_run.next = drawn_run
+            view_run.next = drawn_run
 
     @always_seq(clk.posedge, reset=reset)
     def measure():

@@ -13,7 +13,7 @@ from raycaster.rtl.span.run_memory import run_memory
 
 @block
 def list_player(
-    clk, reset, scan, upper, shown_run, write, write_place, written, shown, pixels: int, entries: int
+    clk, reset, scan, upper, view_run, write, write_place, written, shown, pixels: int, entries: int
 ):  # fmt: skip
     """Keep both lists, and play the one in view.
 
@@ -28,7 +28,7 @@ def list_player(
         scan: `Scan`, a cycle ahead of the pixels: with one clock per pixel, lead=1 of the `video_generator`.
         upper: flag; the upper list is drawn, and the lower one is in view. Changes only in the cycle after
             scan.start_screen.
-        shown_run: flag; there is a frame in the list in view. Changes like upper.
+        view_run: flag; there is a frame in the list in view. Changes like upper.
         write: strobe; written belongs to the list that is drawn.
         write_place: unsigned, `entry_bits` bits; number of the entry. The upper list follows the lower one.
         written: `ListEntry`.
@@ -48,7 +48,7 @@ def list_player(
     fetched, heads = ([written.twin() for _ in range(pixels)] for _ in range(2))
 
     follower = row_place(
-        clk, reset, scan=scan, first=first, shown_run=shown_run, taken=taken, restart=restart, place=place,
+        clk, reset, scan=scan, first=first, view_run=view_run, taken=taken, restart=restart, place=place,
         playing=playing,
     )  # fmt: skip
     banks = [

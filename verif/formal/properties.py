@@ -65,7 +65,7 @@ ORDER = (
     "contest-products", "shares-exact", "group-safe", "tester-exact", "tester-products", "nearest-products",
     "eye-exact", "cell-products", "shadow-products", "shadow-wiring", "unit-wiring", "slope-exact", "blend-exact",
     "row-setup", "line-start", "walked-products", "turned-walks", "fold-exact", "fold-products",
-    "beam-tester-products", "fixed-rects", "divider-exact", "run-order", "whole-frames",
+    "beam-tester-products", "fixed-rects", "divider-exact", "run-order", "whole-frames", "played-lines",
 )  # fmt: skip
 """Names of the properties, in the order of tables. The file of each has underscores for dashes."""
 

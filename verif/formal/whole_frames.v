@@ -2,12 +2,12 @@
 // The lists between units and monitor, with a picture of a few rows. The units, their queues and the monitor's side are
 // cut out, so runs come at any time and in any order, and StartScreen at any time.
 //
-// That nobody waits for ever follows from three facts. A run of the unit whose turn it is, is taken at once, or the frame
-// is abandoned; the turn passes on with each row, and rows are dealt in the same order; and a queue with room takes a row
-// without a pause, as run_order proves. So the first row that is not yet complete is always dealt: the runs of its
-// unit's rows above have left the queue, and the unit is done with them.
+// That nobody waits for ever follows from three facts. A run of the unit whose turn it is, is taken at once, or the
+// frame is abandoned. The turn passes on with each row, and rows are dealt in the same order. A queue with room takes a
+// row without a pause, as run_order proves. So the first row that is not yet complete has been dealt, or its unit is
+// done with the rows above, whose runs have left the queue, and it is dealt at once.
 //
-// Assumed: a cycle of reset at first, StartScreen not in two cycles in turn, and only runs of rows that have been dealt.
+// Assumed: a cycle of reset at first, no two StartScreens in a row, and only runs of rows that have been dealt.
 //
 // [proof]
 // claim = """what is shown is one whole frame, which nothing writes into; a frame that is whole is shown at the next \
@@ -25,8 +25,8 @@
 // designs = ["alone=list UNITS=3 ROWS=4 COLUMNS=2 ENTRIES=8 PIXELS=1"]
 // [faults]
 // "units 2, rows 3" = ["frame_switch.upper 0 in 20", "frame_list.first 0 in 20", "frame_switch.ready 1 in 20",
-//   "frame_switch.take_scene as start_screen in 20", "row_collector.rows_left edge in 20", "row_collector.turn 0 in 20",
-//   "row_collector.room 1 in 20", "row_collector.write late in 20", "row_dealer.busy 0 in 20",
+//   "frame_switch.take_scene as start_screen in 20", "row_collector.rows_left edge in 20",
+//   "row_collector.turn 0 in 20", "row_collector.room 1 in 20", "row_collector.write late in 20", "row_dealer.busy 0 in 20",
 //   "row_dealer.turn 0 in 20", "frame_switch.drawn_run 1 in 20", "row_collector.whole late in 20"]
 
 module whole_frames;
@@ -69,13 +69,13 @@ always @* begin
     if (drawing && rows_taken >= dealt) assume (!dut.offered);
 end
 
-// The list in view is one whole frame. Nothing is written into it, and it changes only if a whole frame takes its place.
+// The list in view is one whole frame. Nothing is written into it, and only a whole frame takes its place.
 always @* if (known) begin
-    if (shown_run) assert (whole[!upper]);
+    if (view_run) assert (whole[!upper]);
     if (write) assert (drawing && place == first + entries_in && entries_in < ENTRIES && rows_in < ROWS);
     if ($past(known) && !$past(reset)) begin
         assert (upper == ($past(upper) ^ $past(hands_over)));
-        assert (shown_run == ($past(hands_over) ? !$past(black) : $past(shown_run)));
+        assert (view_run == ($past(hands_over) ? !$past(black) : $past(view_run)));
     end
 end
 
@@ -128,7 +128,7 @@ always @* if (known) begin
     assert (dut.row_dealer_i.settles == settling && first_row + settling + settled <= 1);
     if (first_row || settling) assert (drawing);
 end
-wire shown_run = dut.shown_run;
+wire view_run = dut.view_run;
 
 // Covers a frame that is shown after it was late, one after an abandoned one, and a full list.
 reg was_late, was_abandoned;

@@ -23,7 +23,7 @@ def test_frame_switch(leaf_of, random):
         new_frame, take_scene = model.state == "begin" and run, model.state == "wait" and start_screen
         leaf.expect(named("events", events))
         leaf.expect({"take_scene": take_scene, "new_frame": new_frame, "stop": model.state == "draw" and full})
-        leaf.expect({"upper": model.upper, "shown_run": model.shown is not None})
+        leaf.expect({"upper": model.upper, "view_run": model.shown is not None})
         seen = {name: seen[name] + bool(events.get(name)) for name in seen}
         seen["black"] += model.state == "begin" and not run
         model.clock(start_screen, run, number, whole, full, cycle)

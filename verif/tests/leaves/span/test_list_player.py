@@ -16,26 +16,26 @@ def test_list_player(entries, pixels, doubling, clocks, leaf_of, random):
     made = {"written": lambda: ListEntry(COLUMNS, PIXEL_BITS), "scan": Scan}
     ports = {"write_place": entry_bits(entries), "shown": pixels * PIXEL_BITS}
     leaf = leaf_of(list_player, entries=entries, pixels=pixels, **ports, **made)
-    beam, upper, shown_run, full = Beam(list_screen(COLUMNS, ROWS, doubling, clocks), pixels), 0, 0, 0
+    beam, upper, view_run, full = Beam(list_screen(COLUMNS, ROWS, doubling, clocks), pixels), 0, 0, 0
     # The rows of each list, and what is still to be written of the one that is drawn.
     frames, runs, place = [None, None], [], 0
     leaf.case({"reset": 1})
     for _ in range(leaf.some(15) * beam.period):
         cycle, scan = leaf.cycle, beam.scan()
         write = bool(runs) and random.random() < 0.5
-        leaf.case({"reset": 0, **named("scan", scan), "upper": upper, "shown_run": shown_run, "write": write})
+        leaf.case({"reset": 0, **named("scan", scan), "upper": upper, "view_run": view_run, "write": write})
         leaf.stimulus[-1] |= {"write_place": upper * entries + place} | entry("written", runs[0] if runs else (0, 0))
         if beam.place:
             row, column = beam.place
             view = frames[1 - upper]
-            pixels_shown = pixels_of(view[row])[column : column + pixels] if shown_run else [0] * pixels
+            pixels_shown = pixels_of(view[row])[column : column + pixels] if view_run else [0] * pixels
             leaf.expected[cycle + 1]["shown"] = side_by_side(pixels_shown, PIXEL_BITS)
         if write:
             runs, place = runs[1:], place + 1
             full += place == entries
         if scan["start_screen"]:
             if not runs and random.random() < 0.8:
-                upper, shown_run = 1 - upper, int(frames[upper] is not None and random.random() < 0.9)
+                upper, view_run = 1 - upper, int(frames[upper] is not None and random.random() < 0.9)
             if not runs:
                 rows = any_frame(random, COLUMNS, ROWS, entries)
                 runs, place = [run for row in rows for run in row], 0

@@ -24,7 +24,7 @@ def test_row_place(pixels, doubling, clocks, leaf_of, random):
             yield begin, taken
             begin, length = begin + taken, length - taken
 
-    row = length = first = shown_run = playing = visible = place = 0
+    row = length = first = view_run = playing = visible = place = 0
     played, coming, leaving, restarts = iter(()), {}, set(), {}
     leaf.case({"reset": 1})
     for _ in range(leaf.some(20) * beam.period):
@@ -42,18 +42,18 @@ def test_row_place(pixels, doubling, clocks, leaf_of, random):
             played = line(row, length) if playing else iter(())
         if playing and scan["next_column"]:
             place, taken = next(played)
-        leaf.case({"reset": reset, **named("scan", scan), "first": first, "shown_run": shown_run, "taken": taken})
+        leaf.case({"reset": reset, **named("scan", scan), "first": first, "view_run": view_run, "taken": taken})
         leaf.expect({"playing": playing, "restart": restarts.pop(cycle, 0)})
         leaf.expect({"place": place % (1 << BITS)}, when=taken)
         beam.clock(bool(reset))
         # Both inputs change in the cycle after StartScreen.
         if scan["start_screen"]:
-            shown_run, first = int(random.random() < 0.8), int(random.integers(1 << BITS))
+            view_run, first = int(random.random() < 0.8), int(random.integers(1 << BITS))
             leaving.add(cycle + 2)
             row, length = first, 0
         if scan["start_row"]:
-            coming[cycle + 2] = row + length, int(random.integers(1, COLUMNS + 1)), shown_run
-            restarts[cycle + 2] = shown_run
+            coming[cycle + 2] = row + length, int(random.integers(1, COLUMNS + 1)), view_run
+            restarts[cycle + 2] = view_run
         if reset:
             row = length = playing = visible = 0
             coming, leaving, restarts = {}, set(), {}
