@@ -51,6 +51,16 @@ def first_change(value: int, growth: int) -> int:
     return 1 + (~value if value < 0 else value) // abs(growth)
 
 
+Rays = tuple[Line, Line, Line]
+"""The slope of rays, in one component after the other."""
+
+
+def folded(rays: Rays, axis: int, back: bool) -> Line:
+    """Return a component of a slope, with its sign changed or not."""
+    line = rays[axis]
+    return Line(-line.at_0, -line.growth) if back else line
+
+
 class Rect(NamedTuple):
     """A rectangle of the table, with a plane."""
 
@@ -64,6 +74,11 @@ class Rect(NamedTuple):
     cell: int
     colour: Vector
     colour_2: Vector
+
+    @property
+    def is_point(self) -> bool:
+        """True if it has no extent."""
+        return self.low == self.high
 
 
 class Chain(NamedTuple):
@@ -106,6 +121,65 @@ def order(first: Entry, second: Entry) -> Line:
     """Return a line that is not negative where the first entry is seen before the second one."""
     later = int(first.rect.index > second.rect.index)
     return combined(second.distance, first.ahead, first.distance, second.ahead, later)
+
+
+@dataclass
+class Cells:
+    """The cells of a pattern along one axis, from the present column to the right."""
+
+    edge: tuple[Line, Line]
+    """The edge of cell 0, times e, and how much more an edge is for each further cell: a line that is not negative
+    where a point is at the edge or beyond."""
+
+    cell: int = 0
+    """Number of the present cell."""
+
+    next: int = 0
+    """The column in which the next cell begins; the span's end if there is none."""
+
+    rises: bool = False
+    """The next cell's number is greater."""
+
+    def line(self, edge: int) -> Line:
+        """Return the line of an edge."""
+        return combined(1, self.edge[0], edge, self.edge[1])
+
+
+@dataclass
+class Surface:
+    """The surface that is seen at a level, from the present column to the right."""
+
+    weight: int
+    """Its weight in the picture."""
+
+    colours: tuple[Vector, Vector]
+    stop: int
+    """The column after it."""
+
+    kind: int = 0
+    """Of its pattern, as in `Rectangles`."""
+
+    cells: list[Cells] = field(default_factory=list)
+    """Of the pattern, along u and v as far as it needs them."""
+
+    shadows: list[tuple[int, int]] = field(default_factory=list)
+    """Columns in which a rectangle is between the surface and the light."""
+
+    dark: bool = False
+    """The light does not reach the present column."""
+
+    next_dark: int = 0
+    """The column in which that changes, or might; stop if it does not."""
+
+    @property
+    def next(self) -> int:
+        """The column in which the colour changes, or might."""
+        return min([self.next_dark, *(cells.next for cells in self.cells)])
+
+    def colour(self, shade: int) -> Vector:
+        """Return the colour at the present column; shade quarters of it remain in the dark."""
+        colour = self.colours[sum(cells.cell for cells in self.cells) % 2]
+        return tuple(shade * channel >> 2 for channel in colour) if self.dark else colour
 
 
 @dataclass
@@ -201,12 +275,12 @@ def _rects(table: Rectangles) -> Iterator[Rect]:
 class Drawing:
     """A row that is being drawn; `now` is the number of the present cycle."""
 
-    def __init__(self, model: SpanModel, slope: tuple[Line, Line, Line]):
+    def __init__(self, model: SpanModel, slope: Rays):
         self.model, self.slope, self.result, self.now = model, slope, Row(), 0
         self.division = (model.columns - 1).bit_length() + 1
         """Cycles of a division."""
-        self.shown: list[tuple[int, Vector]] = []
-        """The weight and the colour of each level above the present one."""
+        self.shown: list[Surface] = []
+        """What is seen at each level, up to the present one."""
 
     def draw(self) -> Row:
         """Draw the row."""
@@ -216,11 +290,6 @@ class Drawing:
         # The last run passes two registers.
         self.result.cycles = self.now + 2
         return self.result
-
-    def folded(self, axis: int, back: bool) -> Line:
-        """Return a component of the slope, with its sign changed or not."""
-        line = self.slope[axis]
-        return Line(-line.at_0, -line.growth) if back else line
 
     # -- Chains and their spans
 
@@ -246,9 +315,7 @@ class Drawing:
         while column < stop:
             self.now += 1
             part, corner = self.corner(chain, column, stop, winner) if winner and quarters else (stop, False)
-            colour = winner.rect.colour if winner else tuple(int(channel) for channel in self.model.background)
-            self.shown.append((weight * (4 - quarters) // 4, colour))
-            self.now += 1
+            self.shown.append(self.paint(chain, column, stop, winner, weight * (4 - quarters) // 4))
             if quarters:
                 self.now += 1
                 self.chain(self.behind(chain, winner, column, part, corner), weight * quarters // 4)
@@ -280,27 +347,127 @@ class Drawing:
         met = (chain.met if corner else frozenset()) | {axis}
         return Chain(start, stop, eye, back, winner.distance, winner.ahead, met)
 
+    # -- Surfaces
+
+    def paint(self, chain: Chain, column: int, stop: int, winner: Entry | None, weight: int) -> Surface:
+        """Return what is seen in a span, and find its first cells and shadows."""
+        self.now += 1
+        if winner is None:
+            colour = tuple(int(channel) for channel in self.model.background)
+            return Surface(weight, (colour, colour), stop, next_dark=stop)
+        rect = winner.rect
+        surface = Surface(weight, (rect.colour, rect.colour_2), stop, rect.kind, next_dark=stop)
+        if not weight:
+            return surface
+        # A checker has cells along u and v, rows only along v, and columns only along u.
+        along_u, along_v = OTHER_AXES[rect.axis]
+        for u in ((), (along_u, along_v), (along_v,), (along_u,))[rect.kind]:
+            aside = folded(self.slope, u, chain.back[u])
+            edge = combined(winner.distance, aside, -chain.eye[u], winner.ahead)
+            cells = Cells((edge, combined(rect.cell, winner.ahead, 0, winner.ahead)))
+            self.now += ANSWER + 2 + self.division
+            cells.cell = edge.at(column) // (rect.cell * winner.ahead.at(column))
+            self.follow(cells, column, stop)
+            surface.cells.append(cells)
+        if self.model.light:
+            self.shade(surface, chain, column, winner)
+        return surface
+
+    def follow(self, cells: Cells, column: int, stop: int) -> None:
+        """Find the column in which the next cell of a pattern begins."""
+        self.result.steps["cells"] += 1
+        self.now += ANSWER + 3
+        above, below, cells.next = cells.line(cells.cell + 1), cells.line(cells.cell), stop
+        cells.rises = above.at(stop - 1) >= 0
+        if not cells.rises and below.at(stop - 1) >= 0:
+            return
+        line = above if cells.rises else below
+        cells.next = column
+        if (line.at(column) < 0) == cells.rises:
+            self.result.steps["divisions"] += 1
+            self.now += self.division
+            cells.next += first_change(line.at(column), line.growth)
+
+    def shade(self, surface: Surface, chain: Chain, column: int, winner: Entry) -> None:
+        """Find the shadows on a surface."""
+        light, axis, plane = self.model.light.position, winner.rect.axis, winner.rect.plane
+        # The rays come from the side of the eye.
+        if (light[axis] - plane) * (plane - chain.eye[axis]) >= 0:
+            surface.dark = True
+            return
+        self.result.steps["lit"] += 1
+        # The slope from the light to the point, times e, which is linear too.
+        rays = tuple(
+            combined(winner.distance, folded(self.slope, u, chain.back[u]), light[u] - chain.eye[u], winner.ahead)
+            for u in range(3)
+        )
+        self.now += 5 + ANSWER
+        fan = Chain(column, surface.stop, tuple(light), (False, False, False))
+        surface.shadows = [(one.start, one.stop) for one in self.set_up(fan, rays, winner.ahead)]
+        self.look(surface, column)
+
+    def look(self, surface: Surface, column: int) -> None:
+        """Find whether a column is in a shadow, and where that changes, or might."""
+        self.now += len(surface.shadows) + 2
+        covering = [stop for start, stop in surface.shadows if start <= column < stop]
+        surface.dark = bool(covering)
+        later = [start for start, _ in surface.shadows if start > column]
+        surface.next_dark = max(covering) if covering else min(later, default=surface.stop)
+
     def emit(self, stop: int) -> None:
         """Mix the colours of all levels, up to a column."""
-        self.result.steps["parts"] += 1
-        self.now += len(self.shown) + 2
-        sums = [sum(weight * colour[channel] for weight, colour in self.shown) for channel in range(3)]
-        mixed = tuple(one >> 2 * self.model.reflections for one in sums)
+        self.now += 1
+        while True:
+            self.result.steps["parts"] += 1
+            self.now += len(self.shown) + 1
+            end = min([stop, *(surface.next for surface in self.shown)])
+            self.run(end)
+            if end == stop:
+                return
+            for surface in self.shown:
+                self.step(surface, end)
+
+    def step(self, surface: Surface, column: int) -> None:
+        """Go on to a column."""
+        for cells in surface.cells:
+            while cells.next == column:
+                self.now += 1
+                cells.cell += 1 if cells.rises else -1
+                self.follow(cells, column, surface.stop)
+        if surface.next_dark == column:
+            self.now += 1
+            self.look(surface, column)
+        self.now += 1
+
+    def run(self, end: int) -> None:
+        """Append a run up to a column, in the colour of all levels."""
+        shade = self.model.light.quarters if self.model.light else 0
+        seen = [(surface.weight, surface.colour(shade)) for surface in self.shown]
+        mixed = tuple(
+            sum(weight * colour[channel] for weight, colour in seen) >> 2 * self.model.reflections
+            for channel in range(3)
+        )
         runs = self.result.runs
         if runs and runs[-1][1] == mixed:
             runs.pop()
-        runs.append((stop, mixed))
+        runs.append((end, mixed))
 
     # -- The entries of a chain
 
-    def set_up(self, chain: Chain) -> list[Entry]:
-        """Return the rectangles that a chain's rays meet, each with its columns."""
+    def set_up(self, chain: Chain, rays: Rays | None = None, ahead: Line | None = None) -> list[Entry]:
+        """Return the rectangles that a chain's rays meet, each with its columns.
+
+        Args:
+            chain: the chain; or with its rays, those from the light to the points of a surface.
+            rays: the slope, if it is not the row's own.
+            ahead: with rays, e at the surface; a rectangle at t = n / |slope| is in the way if that is less than 1 / e.
+        """
         entries = []
         # The slope's components are asked for, one per cycle.
         hand = self.now + 3 + ANSWER + 1
         accepted, issued, freed = hand, hand, [0, 0]
         for rect in self.model.table:
-            lines = self.half_lines(chain, rect)
+            lines = self.half_lines(chain, rect, rays, ahead)
             if not lines:
                 hand += 1
                 continue
@@ -312,38 +479,46 @@ class Drawing:
             start, stop, cycles = self.clip(chain, lines.values())
             freed = [freed[1], answered + cycles]
             if start < stop:
-                entries.append(Entry(rect, start, stop, *self.approach(chain, rect)))
+                entries.append(Entry(rect, start, stop, *self.approach(chain, rect, rays)))
         self.now = max(hand, issued + 1 if freed[1] else 0, freed[1] + 1) + 2
         self.result.steps["entries"] += len(entries)
         return entries
 
-    def approach(self, chain: Chain, rect: Rect) -> tuple[int, Line]:
+    def approach(self, chain: Chain, rect: Rect, rays: Rays | None = None) -> tuple[int, Line]:
         """Return N and e, with which the rays of a chain meet a rectangle's plane at t = N / e."""
         far = rect.plane - chain.eye[rect.axis]
-        return abs(far), self.folded(rect.axis, chain.back[rect.axis] != (far < 0))
+        return abs(far), folded(rays or self.slope, rect.axis, chain.back[rect.axis] != (far < 0))
 
-    def half_lines(self, chain: Chain, rect: Rect) -> dict[int, Line]:
+    def half_lines(
+        self, chain: Chain, rect: Rect, rays: Rays | None = None, surface: Line | None = None
+    ) -> dict[int, Line]:
         """Return the lines that are not negative where a chain's rays meet a rectangle, by their numbers.
 
         There are none if the plane is not ahead at either end of the chain. Number 0 is only needed if the others do
-        not imply it: the rectangle is a point, or the slope may be 0 in some column.
+        not imply it: the rectangle is a point, or the slope may be 0 in some column; and for rays from the light, which
+        end at the surface. See `set_up` for the arguments.
         """
-        distance, ahead = self.approach(chain, rect)
+        distance, ahead = self.approach(chain, rect, rays)
         first, last = ahead.at(chain.start) > 0, ahead.at(chain.stop - 1) > 0
         if not distance or not (first or last):
             return {}
         lines = {}
-        ends = [(line.at(chain.start), line.at(chain.stop - 1)) for line in self.slope]
-        vanishes = all(min(left, right) <= 0 <= max(left, right) for left, right in ends)
-        if first != last and (vanishes or all(rect.low[u] == rect.high[u] for u in OTHER_AXES[rect.axis])):
+        if surface:
+            lines[0] = combined(1, ahead, distance, surface, 1)
+        elif first != last and (rect.is_point or self.vanishes(chain)):
             lines[0] = combined(1, ahead, 0, ahead, 1)
         for place, u in enumerate(OTHER_AXES[rect.axis]):
-            aside = self.folded(u, chain.back[u])
+            aside = folded(rays or self.slope, u, chain.back[u])
             lines[1 + 2 * place] = combined(distance, aside, rect.low[u] - chain.eye[u], ahead)
             lines[2 + 2 * place] = combined(rect.high[u] - chain.eye[u], ahead, distance, aside)
         if chain.distance:
             lines[5] = combined(distance, chain.ahead, chain.distance, ahead, int(rect.axis in chain.met))
         return lines
+
+    def vanishes(self, chain: Chain) -> bool:
+        """Return True if each component of the slope is 0 in the chain, or changes its sign."""
+        ends = [(line.at(chain.start), line.at(chain.stop - 1)) for line in self.slope]
+        return all(min(left, right) <= 0 <= max(left, right) for left, right in ends)
 
     def clip(self, chain: Chain, lines: Iterable[Line]) -> tuple[int, int, int]:
         """Return the columns in which all lines are not negative, and the cycles that it takes to find them."""

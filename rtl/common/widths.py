@@ -172,6 +172,19 @@ def step_bits(config: Configuration) -> int:
     return BASIS_BITS if config.turn else 2
 
 
+def operand_bits(config: Configuration) -> int:
+    """Width of a component of a slope in a half-line, with sign: the screen's, or that from the light to a surface."""
+    return max(span_slope_bits(config), (light_slope_bits(config) + 1) if config.light else 0)
+
+
+def operand_growth_bits(config: Configuration) -> int:
+    """Width of the change of a slope's component from column to column, with sign.
+
+    A slope from the light is itself a sum of two products, and changes like the line of a rectangle.
+    """
+    return max(step_bits(config), line_growth_bits(config) if config.light else 0)
+
+
 def line_bits(config: Configuration) -> int:
     """Width of A X - B Y - 1, with sign, for two factors and two components of a slope.
 

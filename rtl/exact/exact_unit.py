@@ -11,12 +11,12 @@ from raycaster.rtl.common.widths import RGB_BITS, exact_slope_bits, eye_bits, li
 from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.pattern_colour import pattern_colour
 from raycaster.rtl.engine.ray_generator import ray_generator
+from raycaster.rtl.engine.shade_colour import shade_colour
 from raycaster.rtl.exact.cell_finder import cell_finder
 from raycaster.rtl.exact.eye_register import eye_register
 from raycaster.rtl.exact.nearest_hit import nearest_hit
 from raycaster.rtl.exact.ray_switch import ray_switch
 from raycaster.rtl.exact.rect_tester import rect_tester
-from raycaster.rtl.exact.shade_colour import shade_colour
 from raycaster.rtl.exact.shadow_ray import shadow_ray
 from raycaster.rtl.exact.shadow_register import shadow_register
 from raycaster.rtl.exact.turned_generator import turned_generator

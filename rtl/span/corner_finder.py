@@ -60,7 +60,7 @@ def corner_finder(
         next_column.next = (column + 1) % (1 << width)
 
     asked = query.joined(
-        left=column, right=last, strict=none, axis_1=chain.axis, back_1=chain.back, factor_1=to_winner,
+        from_light=none, left=column, right=last, strict=none, axis_1=chain.axis, back_1=chain.back, factor_1=to_winner,
         axis_2=winner.axis, back_2=winner.back, factor_2=to_mirror, half_line=none, last=none, slot=none,
         number=no_number,
     )  # fmt: skip

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The entries of all chains from the camera to the present one."""
+"""The entries of all chains from the camera to the present one, and those that shade their surfaces."""
 
 from myhdl import always, always_comb, block, concat, instances
 
@@ -9,12 +9,14 @@ from raycaster.rtl.common.widths import index_bits, level_bits
 
 
 @block
-def entry_table(clk, level, append, number, entry, read, place, stored, config: Configuration):
+def entry_table(clk, level, shadows, append, number, entry, read, place, stored, config: Configuration):
     """Hold a table of entries for each level, the number of mirrors of a chain.
 
     Args:
         clk: the clock.
         level: unsigned, `level_bits` bits; the level that is written or read.
+        shadows: flag, read with `config.light`; the table of what shades the level's surface, instead of that of its
+            chain.
         append: strobe; stores entry at number.
         number: unsigned, `count_bits` bits; read with append.
         entry: `Entry`; read with append.
@@ -25,11 +27,25 @@ def entry_table(clk, level, append, number, entry, read, place, stored, config: 
     """
     index_width = index_bits(config)
     leveled = config.reflections > 0
-    address_bits = index_width + (level_bits(config) if leveled else 0)
+    address_bits = index_width + (level_bits(config) if leveled else 0) + config.light
     memory = [unsigned(len(entry.word)) for _ in range(1 << address_bits)]
     write_address, read_address = unsigned(address_bits), unsigned(address_bits)
 
-    if leveled:
+    if leveled and config.light:
+
+        @always_comb
+        def address():
+            write_address.next = concat(shadows, level, number[index_width:])
+            read_address.next = concat(shadows, level, place)
+
+    elif config.light:
+
+        @always_comb
+        def address():
+            write_address.next = concat(shadows, number[index_width:])
+            read_address.next = concat(shadows, place)
+
+    elif leveled:
 
         @always_comb
         def address():

@@ -14,7 +14,8 @@ from raycaster.rtl.span.records import AHEAD, BEYOND, NUMBER_BITS, U_HIGH, U_LOW
 
 @block
 def half_lines(
-    clk, reset, start, chain, rects, answer, free, done, ask, query, slot, opened, entry, walked, config: Configuration
+    clk, reset, start, chain, rects, from_light, answer, free, done, ask, query, slot, opened, entry, walked,
+    config: Configuration,
 ):  # fmt: skip
     """Ask for the half-lines of each rectangle in the table's order, except of those that the rays cannot meet.
 
@@ -33,12 +34,16 @@ def half_lines(
     Without n, or with e <= 0 at both ends of the chain, there is no hit and no line. `AHEAD` is only asked where the
     others do not imply it: e <= 0 at one end, and the rectangle is a point, or the slope may be 0 in some column.
 
+    Rays from the light, as if it were the eye of a chain, meet a surface at t = 1 / s, with s the e of that surface.
+    For them `AHEAD` is e - N s - 1, and is always asked: the rectangle is between the light and the surface.
+
     Args:
         clk: the clock.
         reset: flag; synchronous reset, which ends the walk.
         start: strobe; begins with the rectangles of this chain.
         chain: `Chain`; constant from start to done.
         rects: `Rects`; index and fetch are outputs. A rectangle is read up to the cycle of opened.
+        from_light: flag, read with `config.light`; the chain's rays come from the light. Constant from start to done.
         answer: `Answer`; only those without half_line are read: the slope's components at the ends of the chain.
         free: flag; the slot is free for the next rectangle.
         done: strobe; all lines are answered and used, so the walk is over.
@@ -54,6 +59,7 @@ def half_lines(
     count, index_width = config.rectangles, index_bits(config)
 
     seeing, walking = bit(), bit()
+    lit = from_light if config.light else tied(0, 1)
     asked_axis = unsigned(AXIS_BITS)
     waiting, candidates, others = (unsigned(count) for _ in range(3))
     lowest, upcoming, index = (unsigned(index_width) for _ in range(3))
@@ -200,7 +206,7 @@ def half_lines(
     @always_comb
     def judge():
         skip.next = (n == 0) or not (ahead_left or ahead_right)
-        tested_ahead.next = (ahead_left != ahead_right) and (point or may_vanish)
+        tested_ahead.next = lit or ((ahead_left != ahead_right) and (point or may_vanish))
         ready.next = free and ((not issuing) or last)
 
     @always_comb
@@ -331,6 +337,10 @@ def half_lines(
             factor_1.next = 1
             factor_2.next = 0
             strict.next = True
+            if lit:
+                axis_2.next = 3
+                back_2.next = False
+                factor_2.next = whole_distance
         elif number == BEYOND:
             axis_1.next = mirror_axis
             back_1.next = chain.back
@@ -351,8 +361,9 @@ def half_lines(
         right.next = (chain.stop - 1) % (1 << columns)
 
     asked = query.joined(
-        left=chain.start, right=right, strict=strict, axis_1=axis_1, back_1=back_1, factor_1=factor_1, axis_2=axis_2,
-        back_2=back_2, factor_2=factor_2, half_line=half_line, last=last, slot=slot_1, number=number_asked,
+        from_light=lit, left=chain.start, right=right, strict=strict, axis_1=axis_1, back_1=back_1, factor_1=factor_1,
+        axis_2=axis_2, back_2=back_2, factor_2=factor_2, half_line=half_line, last=last, slot=slot_1,
+        number=number_asked,
     )  # fmt: skip
 
     @always_comb

@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, unsigned
-from raycaster.rtl.common.widths import line_bits, line_factor_bits, span_slope_bits, step_bits
+from raycaster.rtl.common.widths import line_bits, line_factor_bits, operand_bits, operand_growth_bits
 from raycaster.rtl.span.operand_ends import operand_ends
 from raycaster.rtl.span.records import NUMBER_BITS, Query
 
@@ -14,7 +14,7 @@ LATENCY = 5
 
 
 @block
-def line_eval(clk, reset, ask, query, slope, step, answer, config: Configuration):
+def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configuration):
     """Evaluate f(c) = factor_1 X(c) - factor_2 Y(c) - strict at two columns, and its growth; a new line per cycle.
 
     Every decision of a row is the sign of such a line, or the column at which the sign changes. X and Y are components
@@ -28,10 +28,11 @@ def line_eval(clk, reset, ask, query, slope, step, answer, config: Configuration
         slope: `Direction` of `span_slope_bits` bits; the slope of column 0, constant while anything is evaluated.
         step: `Direction` of `step_bits` bits; the slope's change from column to column, constant like slope. Only read
             with `config.turn`; otherwise it is (0, 1, 0).
+        aim: `Aim`; read with `config.light`, constant while lines from the light are evaluated.
         answer: output `Answer`, `LATENCY` cycles after its query.
         config: the design.
     """
-    factor_bits, slope_bits, growth_bits = line_factor_bits(config), span_slope_bits(config), step_bits(config)
+    factor_bits, slope_bits, growth_bits = line_factor_bits(config), operand_bits(config), operand_growth_bits(config)
     kept = line_bits(config)
     product_bits, growth_product_bits = factor_bits + slope_bits, factor_bits + growth_bits
 
@@ -52,12 +53,12 @@ def line_eval(clk, reset, ask, query, slope, step, answer, config: Configuration
     # A number at the end of a name is the stage whose registers hold it.
     operands = (
         operand_ends(
-            clk=clk, axis=query.axis_1, left=query.left, right=query.right, slope=slope, step=step,
-            at_left=x_left, at_right=x_right, growth=x_growth, config=config,
+            clk=clk, axis=query.axis_1, from_light=query.from_light, left=query.left, right=query.right, slope=slope,
+            step=step, aim=aim, at_left=x_left, at_right=x_right, growth=x_growth, config=config,
         ),
         operand_ends(
-            clk=clk, axis=query.axis_2, left=query.left, right=query.right, slope=slope, step=step,
-            at_left=y_left, at_right=y_right, growth=y_growth, config=config,
+            clk=clk, axis=query.axis_2, from_light=query.from_light, left=query.left, right=query.right, slope=slope,
+            step=step, aim=aim, at_left=y_left, at_right=y_right, growth=y_growth, config=config,
         ),
     )  # fmt: skip
 
@@ -99,7 +100,7 @@ def line_eval(clk, reset, ask, query, slope, step, answer, config: Configuration
         factor_1_3.next = factor_1_2
         factor_2_3.next = factor_2_2
 
-    if config.turn:
+    if config.turn or config.light:
 
         @always_comb
         def multiply_growth():

@@ -4,26 +4,30 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import signed
+from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.common.by_axis import by_axis
-from raycaster.rtl.common.widths import column_bits, span_slope_bits, step_bits
+from raycaster.rtl.common.widths import AXIS_BITS, column_bits, span_slope_bits, step_bits
 
 
 @block
-def operand_ends(clk, axis, left, right, slope, step, at_left, at_right, growth, config: Configuration):
+def operand_ends(
+    clk, axis, from_light, left, right, slope, step, aim, at_left, at_right, growth, config: Configuration
+):
     """Compute D[axis](c) = slope[axis] + c step[axis] at two columns, three cycles later.
 
     Args:
         clk: the clock.
         axis: unsigned, 2 bits; 0, 1, 2 for x, y, z.
+        from_light: flag, read with `config.light`; all three come from aim instead, on axis 3 those of e.
         left: unsigned, `column_bits` bits.
         right: unsigned, `column_bits` bits.
         slope: `Direction` of `span_slope_bits` bits; the slope of column 0, constant while anything is computed.
         step: `Direction` of `step_bits` bits; the slope's change from column to column, constant like slope. Only read
             with `config.turn`; otherwise it is (0, 1, 0).
-        at_left: signed output, `span_slope_bits` bits; the component at the column left.
-        at_right: signed output, `span_slope_bits` bits; the component at the column right.
-        growth: signed output, `step_bits` bits; its change from column to column.
+        aim: `Aim` of the span whose ends the columns are; read with `config.light`, constant like slope.
+        at_left: signed output, `operand_bits` bits; the component at the column left.
+        at_right: signed output, `operand_bits` bits; the component at the column right.
+        growth: signed output, `operand_growth_bits` bits; its change from column to column.
         config: the design.
     """
     slope_bits, growth_bits, columns = span_slope_bits(config), step_bits(config), column_bits(config)
@@ -85,10 +89,45 @@ def operand_ends(clk, axis, left, right, slope, step, at_left, at_right, growth,
         whole_left.next = start_2 + to_left_2
         whole_right.next = start_2 + to_right_2
 
-    @always(clk.posedge)
-    def stage_3():
-        at_left.next = whole_left[slope_bits:].signed()
-        at_right.next = whole_right[slope_bits:].signed()
-        growth.next = step_2
+    if config.light:
+        axis_1, axis_2, light_1, light_2 = unsigned(AXIS_BITS), unsigned(AXIS_BITS), bit(), bit()
+
+        @always(clk.posedge)
+        def follow():
+            axis_1.next = axis
+            axis_2.next = axis_1
+            light_1.next = from_light
+            light_2.next = light_1
+
+        @always(clk.posedge)
+        def stage_3():
+            if not light_2:
+                at_left.next = whole_left[slope_bits:].signed()
+                at_right.next = whole_right[slope_bits:].signed()
+                growth.next = step_2
+            elif axis_2 == 0:
+                at_left.next = aim.left_x
+                at_right.next = aim.right_x
+                growth.next = aim.growth_x
+            elif axis_2 == 1:
+                at_left.next = aim.left_y
+                at_right.next = aim.right_y
+                growth.next = aim.growth_y
+            elif axis_2 == 2:
+                at_left.next = aim.left_z
+                at_right.next = aim.right_z
+                growth.next = aim.growth_z
+            else:
+                at_left.next = aim.left_e
+                at_right.next = aim.right_e
+                growth.next = aim.growth_e
+
+    else:
+
+        @always(clk.posedge)
+        def stage_3():
+            at_left.next = whole_left[slope_bits:].signed()
+            at_right.next = whole_right[slope_bits:].signed()
+            growth.next = step_2
 
     return instances()

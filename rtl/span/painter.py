@@ -4,100 +4,122 @@
 from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
-from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.signals import bit, tied, unsigned
 from raycaster.rtl.common.records import Colour
-from raycaster.rtl.common.widths import RGB_BITS, level_bits, weight_bits
-from raycaster.rtl.span.records import Paint
+from raycaster.rtl.common.widths import weight_bits
 
-PaintState = enum("IDLE", "SUM", "OFFER")
+PaintState = enum("IDLE", "SUM", "OFFER", "STEP")
 
 
 @block
-def painter(clk, reset, paint, level, share, colour, emit, stop, picture, run, painted, emitted, config: Configuration):
-    """Hold the colour and weight of each level, the number of mirrors before it, and offer runs of the mixed colour.
+def painter(
+    clk, reset, emit, level, stop, picture, seen_share, seen_colour, next_column, stepped, seen, step, place, run,
+    emitted, config: Configuration,
+):  # fmt: skip
+    """Offer the runs of a span, in the mixed colours of what a ray sees at each level, the number of mirrors before it.
+
+    A run ends at the span's end or, before it, where the colour of any level changes, or might.
 
     Args:
         clk: the clock.
         reset: flag; synchronous reset to idle.
-        paint: strobe, only while idle; from now on a ray sees this colour at this level.
-        level: unsigned, `level_bits` bits; read with paint and emit, constant from emit to emitted.
-        share: unsigned, `weight_bits` bits; the colour's weight in the picture, read with paint.
-        colour: unsigned, 24 bits; read with paint.
-        emit: strobe; offer the run that ends at stop, in which the levels from 0 to this one are seen.
-        stop: unsigned, `column_bits` bits; constant from emit to emitted.
+        emit: strobe, while idle; offer the runs from the present column of `surfaces` up to stop.
+        level: unsigned, `level_bits` bits; the levels from 0 to this one are seen. Constant from emit to emitted.
+        stop: unsigned, `column_bits` bits; the column after the span. Constant from emit to emitted.
         picture: `Picture`; only reflections is read, constant from emit to emitted.
+        seen_share: unsigned, `weight_bits` bits; the share of the level that is read.
+        seen_colour: unsigned, 24 bits; its colour at the present column.
+        next_column: unsigned, `column_bits` bits; the column in which that changes, or might; read with patterns
+            or a light.
+        stepped: strobe; the level has gone on; read with patterns or a light.
+        seen: unsigned output, `level_bits` bits; the level to read, or to go on.
+        step: output flag, driven with patterns or a light; the level must go on to place. High up to stepped.
+        place: unsigned output, `column_bits` bits; the column after the run.
         run: output `Run`; ready is an input.
-        painted: output strobe; the level has been painted.
-        emitted: output strobe; the run has been taken.
+        emitted: output strobe; the span's last run has been taken.
         config: the design.
     """
     reflections, share_width = config.reflections, weight_bits(config)
     sum_bits = CHANNEL_BITS + share_width - 1  # all shares add up to 1 << (share_width - 1)
 
     state = Signal(PaintState.IDLE)
-    memory = [unsigned(share_width + RGB_BITS) for _ in range(1 << level_bits(config))]
-    shown_there, seen = Paint(config), Paint(config)
-    seen_colour, mixed = Colour(), Colour()
-    summed = unsigned(level_bits(config))
-    last = bit()
+    colour, mixed = Colour(), Colour()
+    last, taken = bit(), bit()
+    # Without patterns and a light, a span is one run.
+    changing = config.patterns or config.light
+    whole, again = (bit(), bit()) if changing else (tied(1, 1), tied(0, 1))
     red_part, green_part, blue_part = (unsigned(share_width + CHANNEL_BITS) for _ in range(3))
     red, green, blue = (unsigned(sum_bits) for _ in range(3))
     red_shown, green_shown, blue_shown = (unsigned(CHANNEL_BITS) for _ in range(3))
 
-    words = shown_there.joined(share=share, colour=colour)
-
-    @always(clk.posedge)
-    def store():
-        if paint:
-            memory[level].next = words
-
-    @always_comb
-    def look_up():
-        seen.word.next = memory[summed]
-
     @always_comb
     def see_colour():
-        seen_colour.word.next = seen.colour
+        colour.word.next = seen_colour
 
     @always_comb
     def weigh():
-        red_part.next = seen.share * seen_colour.red
-        green_part.next = seen.share * seen_colour.green
-        blue_part.next = seen.share * seen_colour.blue
+        red_part.next = seen_share * colour.red
+        green_part.next = seen_share * colour.green
+        blue_part.next = seen_share * colour.blue
 
     @always_comb
     def see_end():
-        last.next = summed == level
-        emitted.next = (state == PaintState.OFFER) and run.ready
+        last.next = seen == level
+        taken.next = (state == PaintState.OFFER) and run.ready
         run.valid.next = state == PaintState.OFFER
 
+    if changing:
+
+        @always_comb
+        def see_whole():
+            whole.next = place == stop
+            step.next = state == PaintState.STEP
+            again.next = (state == PaintState.STEP) and stepped and last
+
+        @always(clk.posedge)
+        def find_place():
+            if emit or again:
+                place.next = stop
+            elif (state == PaintState.SUM) and (next_column < place):
+                place.next = next_column
+
+    else:
+
+        @always_comb
+        def find_place():
+            place.next = stop
+
     @always_comb
-    def see_paint():
-        painted.next = paint
+    def see_emitted():
+        emitted.next = taken and whole
 
     @always(clk.posedge)
-    def step():
+    def advance():
         if reset:
             state.next = PaintState.IDLE
-        elif emit:
+        elif emit or again:
             state.next = PaintState.SUM
         elif (state == PaintState.SUM) and last:
             state.next = PaintState.OFFER
-        elif emitted:
-            state.next = PaintState.IDLE
+        elif taken:
+            state.next = PaintState.STEP
+            if whole:
+                state.next = PaintState.IDLE
 
     @always(clk.posedge)
     def add():
-        if emit:
-            summed.next = 0
+        if emit or again or taken:
+            seen.next = 0
             red.next = 0
             green.next = 0
             blue.next = 0
         elif state == PaintState.SUM:
-            summed.next = (summed + 1) % (1 << len(summed))
+            seen.next = (seen + 1) % (1 << len(seen))
             red.next = (red + red_part) % (1 << sum_bits)
             green.next = (green + green_part) % (1 << sum_bits)
             blue.next = (blue + blue_part) % (1 << sum_bits)
+        elif (state == PaintState.STEP) and stepped:
+            seen.next = (seen + 1) % (1 << len(seen))
 
     # All channels are divided by 4 for each reflection of the scene.
     @always_comb
@@ -119,7 +141,7 @@ def painter(clk, reset, paint, level, share, colour, emit, stop, picture, run, p
 
     @always_comb
     def offer():
-        run.end.next = stop
+        run.end.next = place
         run.colour.next = mixed.word
 
     return instances()

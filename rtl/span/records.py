@@ -1,18 +1,23 @@
 # SPDX-License-Identifier: MIT
 """Records and groups of signals of the span engine."""
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.records import Interface, Record
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
+    CELL_BITS,
+    KIND_BITS,
     RGB_BITS,
+    SMALLEST_CELL_BITS,
     column_bits,
     divisor_bits,
     eye_bits,
     index_bits,
     line_bits,
     line_factor_bits,
+    operand_bits,
+    operand_growth_bits,
     weight_bits,
 )
 
@@ -20,6 +25,9 @@ AHEAD, U_LOW, U_HIGH, V_LOW, V_HIGH, BEYOND = range(6)
 """Numbers of a rectangle's half-lines: ahead of the eye, within its four bounds, and beyond the last mirror."""
 
 NUMBER_BITS = 3
+
+PLACE_BITS = COORDINATE_BITS - SMALLEST_CELL_BITS
+"""Width of the number of a pattern's cell."""
 
 
 class Chain(Record):
@@ -72,11 +80,57 @@ class Frame(Record):
         )
 
 
-class Paint(Record):
-    """A colour that a ray sees, and its share in the picture, in units of 4 ** -reflections."""
+class Surface(Record):
+    """The surface that rays of a span see: its colour, and its share in the picture, in units of 4 ** -reflections.
+
+    With patterns, kind, colour_2: as in a `Look`, with kind 0 for a share of 0.
+    """
 
     def __init__(self, config: Configuration):
-        super().__init__({"share": weight_bits(config), "colour": RGB_BITS})
+        some = int(config.patterns)
+        super().__init__(
+            {"share": weight_bits(config), "colour": RGB_BITS, "kind": KIND_BITS * some, "colour_2": RGB_BITS * some}
+        )
+
+
+class Grid(Record):
+    """The pattern of a surface, as a chain's rays see it.
+
+    kind, cell: as in a `Look`, with kind 0 for no pattern; axis, back, distance: of the rectangle's `Entry`; eye_u,
+    eye_v: the mirrored eye on the two other axes; back_u, back_v: the slope's components there have changed their
+    signs; stop: the column after the surface.
+    """
+
+    def __init__(self, config: Configuration):
+        far_bits = eye_bits(config)
+        super().__init__(
+            {"kind": KIND_BITS, "cell": CELL_BITS, "axis": AXIS_BITS, "back": 1, "distance": far_bits - 1}
+            | dict.fromkeys(("eye_u", "eye_v"), Signed(far_bits))
+            | {"back_u": 1, "back_v": 1, "stop": column_bits(config)}
+        )
+
+
+class Cells(Record):
+    """The pattern's cells at the present column: their numbers along u and v, and the columns in which the next begin.
+
+    rises_u, rises_v: the next cell has a greater number; next_u, next_v: the surface's end if there is none.
+    """
+
+    def __init__(self, config: Configuration):
+        super().__init__(
+            dict.fromkeys(("cell_u", "cell_v"), PLACE_BITS)
+            | dict.fromkeys(("rises_u", "rises_v"), 1)
+            | dict.fromkeys(("next_u", "next_v"), column_bits(config))
+        )
+
+
+class Shadows(Record):
+    """The light on a surface: dark, it does not reach the present column; until: the column in which that changes, or
+    might; count: the number of rectangles that shade it somewhere; stop: the column after the surface."""
+
+    def __init__(self, config: Configuration):
+        columns = column_bits(config)
+        super().__init__({"dark": 1, "until": columns, "count": count_bits(config), "stop": columns})
 
 
 def count_bits(config: Configuration) -> int:
@@ -89,13 +143,13 @@ class Query(Record):
 
     X and Y are the components of the slope on axis_1 and axis_2, negated if back_1 and back_2. half_line, last, slot,
     number: returned with the answer. half_line: it belongs to a rectangle's set-up, in that slot; last: the rectangle
-    has no more.
+    has no more. With a light, from_light: X and Y are components of the slope from the light, and on axis 3 of e.
     """
 
     def __init__(self, config: Configuration):
         columns, factor = column_bits(config), Signed(line_factor_bits(config))
         super().__init__(
-            {"left": columns, "right": columns, "strict": 1}
+            {"from_light": int(config.light), "left": columns, "right": columns, "strict": 1}
             | {"axis_1": AXIS_BITS, "back_1": 1, "factor_1": factor}
             | {"axis_2": AXIS_BITS, "back_2": 1, "factor_2": factor}
             | {"half_line": 1, "last": 1, "slot": 1, "number": NUMBER_BITS}
@@ -121,6 +175,31 @@ class Answer(Interface):
         self.number = unsigned(NUMBER_BITS)
         self.left, self.right = signed(line_bits(config)), signed(line_bits(config))
         self.growth = signed(divisor_bits(config))
+
+
+class Aim(Interface):
+    """The slope from the light to the points of a surface, times e, and e itself, at both ends of a span.
+
+    Attributes:
+        left_x: component along x in the span's first column.
+        left_y: component along y there.
+        left_z: component along z there.
+        left_e: e there.
+        right_x: component along x in the span's last column.
+        right_y: component along y there.
+        right_z: component along z there.
+        right_e: e there.
+        growth_x: change of the component along x from column to column.
+        growth_y: that of the component along y.
+        growth_z: that of the component along z.
+        growth_e: that of e.
+    """
+
+    def __init__(self, config: Configuration):
+        bits, growth = operand_bits(config), operand_growth_bits(config)
+        self.left_x, self.left_y, self.left_z, self.left_e = (signed(bits) for _ in range(4))
+        self.right_x, self.right_y, self.right_z, self.right_e = (signed(bits) for _ in range(4))
+        self.growth_x, self.growth_y, self.growth_z, self.growth_e = (signed(growth) for _ in range(4))
 
 
 class Division(Record):

@@ -12,8 +12,8 @@ from raycaster.rtl.span.records import Entry
 
 @block
 def set_up(
-    clk, reset, start, chain, rects, answer, divided, columns, ask, query, divide, division, append, entry, count, done,
-    config: Configuration,
+    clk, reset, start, chain, from_light, rects, answer, divided, columns, ask, query, divide, division, append, entry,
+    count, done, config: Configuration,
 ):  # fmt: skip
     """Find all entries of a chain, in the order of the table: exactly the columns in which a ray meets the rectangle.
 
@@ -22,6 +22,7 @@ def set_up(
         reset: flag; synchronous reset to idle.
         start: strobe; takes a chain while idle.
         chain: `Chain`; constant from the cycle before start to done.
+        from_light: flag, read with `config.light`; the chain's rays come from the light. Constant like chain.
         rects: `Rects`; index and fetch are outputs.
         answer: `Answer` of `line_eval`.
         divided: strobe; `first_change` is done.
@@ -40,7 +41,8 @@ def set_up(
     met = Entry(config)
 
     walk = half_lines(
-        clk=clk, reset=reset, start=start, chain=chain, rects=rects, answer=answer, free=free, done=done, ask=ask,
+        clk=clk, reset=reset, start=start, chain=chain, from_light=from_light, rects=rects, answer=answer,
+        free=free, done=done, ask=ask,
         query=query, slot=slot, opened=opened, entry=met, walked=walked, config=config,
     )  # fmt: skip
     clip = clipper(

@@ -22,10 +22,12 @@ from raycaster.rtl.span.first_change import first_change
 from raycaster.rtl.span.fold import fold
 from raycaster.rtl.span.line_eval import line_eval
 from raycaster.rtl.span.painter import painter
-from raycaster.rtl.span.records import Answer, Chain, Division, Entry, Frame, Query, count_bits
+from raycaster.rtl.span.records import Aim, Answer, Chain, Division, Entry, Frame, Query, Surface, count_bits
 from raycaster.rtl.span.run_joiner import run_joiner
 from raycaster.rtl.span.set_up import set_up
 from raycaster.rtl.span.span_control import span_control
+from raycaster.rtl.span.surface_table import surface_table
+from raycaster.rtl.span.surfaces import surfaces
 from raycaster.rtl.span.sweep import sweep
 
 
@@ -65,8 +67,20 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
     entry_count, count = unsigned(count_bits(config)), unsigned(count_bits(config))
     share = unsigned(weight_bits(config)) if mirrors else tied(1, weight_bits(config))
     colour = unsigned(RGB_BITS)
-    walk, part = Rects(config), Run(config)
-    walk.usable, walk.rect = rects.usable, rects.rect
+    seen, reached = unsigned(level_bits(config)), unsigned(width)
+    seen_share, seen_colour = unsigned(weight_bits(config)), unsigned(RGB_BITS)
+    surface_divide = bit() if config.patterns else tied(0, 1)
+    surface_division = Division(config) if config.patterns else Division(config).tie({})
+    aim, fan = Aim(config), Chain(config)
+    begin_fan, read_shadow = (bit(), bit()) if config.light else (unconnected(1), unconnected(1))
+    shading = bit() if config.light else tied(0, 1)
+    read_entry, entry_place, shadow_place, shaded_level = read, place, place, level
+    rays, start_set_up, table_level = chain, begin_set_up, level
+    if config.light:
+        read_entry, entry_place, shadow_place = bit(), unsigned(index_bits(config)), unsigned(index_bits(config))
+        shaded_level, table_level = unsigned(level_bits(config)), unsigned(level_bits(config))
+        rays, start_set_up = Chain(config), bit()
+    walk, part = Rects(config, usable=rects.usable, rect=rects.rect), Run(config)
 
     if mirrors:
         folded, kept, frame, corner_query = Chain(config), Frame(config), Frame(config), Query(config)
@@ -103,6 +117,54 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
         cornered, corner_done, corner_ask = (tied(0, 1) for _ in range(3))
         begin_corner, push, passed_on = unconnected(1), unconnected(1), unconnected(1)
 
+    if config.patterns or config.light:
+        surface_query = Query(config)
+        surface_ask, go_on, stepped = bit(), bit(), bit()
+        next_column = unsigned(width)
+        looks = surfaces(
+            clk=clk, reset=reset, paint=begin_paint, level=level, share=share, colour=colour, gap=gap, rect=rects.rect,
+            chain=chain, winner=winner, camera=camera, column=column, stop=stop, seen=seen, step=go_on, place=reached,
+            answer=answer, divided=divided, columns=columns, set_up_done=set_up_done, entry_count=entry_count,
+            tested=tested, ask=surface_ask, query=surface_query, divide=surface_divide, division=surface_division,
+            aim=aim, fan=fan, begin_set_up=begin_fan, shading=shading, shaded_level=shaded_level, read=read_shadow,
+            read_place=shadow_place, painted=painted, seen_share=seen_share, seen_colour=seen_colour,
+            next_column=next_column, stepped=stepped, config=config,
+        )  # fmt: skip
+    else:
+        surface_query = Query(config).tie({})
+        surface_ask, stepped, next_column, go_on = tied(0, 1), tied(0, 1), tied(0, width), unconnected(1)
+        given, surface = Surface(config), Surface(config)
+        plain = given.joined(share=share, colour=colour)
+        looks = surface_table(
+            clk=clk, paint=begin_paint, level=level, given=given, seen=seen, shown=surface, config=config
+        )
+
+        @always_comb
+        def show_surface():
+            given.word.next = plain
+            painted.next = begin_paint
+            seen_share.next = surface.share
+            seen_colour.next = surface.colour
+
+    # The shadows on a surface are found like the entries of a chain.
+    if config.light:
+
+        @always_comb
+        def choose_rays():
+            rays.word.next = chain.word
+            table_level.next = level
+            if shading:
+                rays.word.next = fan.word
+                table_level.next = shaded_level
+            start_set_up.next = begin_set_up or begin_fan
+
+        @always_comb
+        def choose_read():
+            read.next = read_entry or read_shadow
+            place.next = entry_place
+            if read_shadow:
+                place.next = shadow_place
+
     control = span_control(
         clk=clk, reset=reset, start=start, camera=camera, picture=picture, rect=rects.rect, set_up_done=set_up_done,
         entry_count=entry_count, sweep_done=sweep_done, swept_stop=swept_stop, swept_inherited=swept_inherited,
@@ -113,29 +175,38 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
         count=count, share=share, colour=colour, passed_on=passed_on, config=config,
     )  # fmt: skip
     finder = set_up(
-        clk=clk, reset=reset, start=begin_set_up, chain=chain, rects=walk, answer=answer, divided=divided,
-        columns=columns, ask=set_up_ask, query=set_up_query, divide=set_up_divide, division=set_up_division,
-        append=append, entry=entry, count=entry_count, done=set_up_done, config=config,
+        clk=clk, reset=reset, start=start_set_up, chain=rays, from_light=shading, rects=walk, answer=answer,
+        divided=divided, columns=columns, ask=set_up_ask, query=set_up_query, divide=set_up_divide,
+        division=set_up_division, append=append, entry=entry, count=entry_count, done=set_up_done, config=config,
     )  # fmt: skip
     table = entry_table(
-        clk=clk, level=level, append=append, number=entry_count, entry=entry, read=read, place=place, stored=tested,
-        config=config,
+        clk=clk, level=table_level, shadows=shading, append=append, number=entry_count, entry=entry, read=read,
+        place=place, stored=tested, config=config,
     )  # fmt: skip
     sweeper = sweep(
         clk=clk, reset=reset, start=begin_sweep, gap=gap, column=column, chain_stop=chain.stop, winner=winner,
-        count=count, tested=tested, answer=answer, divided=divided, columns=columns, read=read, place=place,
+        count=count, tested=tested, answer=answer, divided=divided, columns=columns, read=read_entry, place=entry_place,
         ask=sweep_ask, query=sweep_query, divide=sweep_divide, division=sweep_division, stop=swept_stop,
         inherited=swept_inherited, heir=swept_heir, done=sweep_done, config=config,
     )  # fmt: skip
     evaluator = line_eval(
-        clk=clk, reset=reset, ask=ask, query=query, slope=first_slope, step=step, answer=answer, config=config
+        clk=clk,
+        reset=reset,
+        ask=ask,
+        query=query,
+        slope=first_slope,
+        step=step,
+        aim=aim,
+        answer=answer,
+        config=config,
     )
     divider = first_change(
         clk=clk, reset=reset, start=divide, division=division, columns=columns, done=divided, config=config
     )
     mixer = painter(
-        clk=clk, reset=reset, paint=begin_paint, level=level, share=share, colour=colour, emit=begin_emit, stop=stop,
-        picture=picture, run=part, painted=painted, emitted=emitted, config=config,
+        clk=clk, reset=reset, emit=begin_emit, level=level, stop=stop, picture=picture, seen_share=seen_share,
+        seen_colour=seen_colour, next_column=next_column, stepped=stepped, seen=seen, step=go_on, place=reached,
+        run=part, emitted=emitted, config=config,
     )  # fmt: skip
     joiner = run_joiner(clk=clk, reset=reset, part=part, run=run, done=done, config=config)
 
@@ -164,18 +235,22 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
 
     @always_comb
     def choose_query():
-        ask.next = set_up_ask or sweep_ask or corner_ask
+        ask.next = set_up_ask or sweep_ask or corner_ask or surface_ask
         query.word.next = set_up_query.word
         if sweep_ask:
             query.word.next = sweep_query.word
         elif corner_ask:
             query.word.next = corner_query.word
+        elif surface_ask:
+            query.word.next = surface_query.word
 
     @always_comb
     def choose_division():
-        divide.next = set_up_divide or sweep_divide
+        divide.next = set_up_divide or sweep_divide or surface_divide
         division.word.next = set_up_division.word
         if sweep_divide:
             division.word.next = sweep_division.word
+        elif surface_divide:
+            division.word.next = surface_division.word
 
     return instances()

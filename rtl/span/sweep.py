@@ -231,7 +231,7 @@ def sweep(
         later.next = tested.index > rival.index
 
     asked = query.joined(
-        left=asked_left, right=asked_right, strict=later, axis_1=tested.axis, back_1=tested.back,
+        from_light=none, left=asked_left, right=asked_right, strict=later, axis_1=tested.axis, back_1=tested.back,
         factor_1=to_rival, axis_2=rival.axis, back_2=rival.back, factor_2=to_tested, half_line=none,
         last=none, slot=none, number=no_number,
     )  # fmt: skip

@@ -17,18 +17,19 @@ from raycaster.golden.exact import ExactModel
 from raycaster.golden.spans import Chain, Line, SpanModel
 from raycaster.golden.spans import row_slope as golden_slope
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.hdl.signals import bit, tied, unsigned
+from raycaster.hdl.signals import bit, tied, unconnected, unsigned
 from raycaster.rtl.common.interfaces import Direction, Rects
 from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import column_bits, index_bits, level_bits, span_slope_bits, step_bits
 from raycaster.rtl.span.entry_table import entry_table
 from raycaster.rtl.span.first_change import first_change
 from raycaster.rtl.span.line_eval import line_eval
-from raycaster.rtl.span.records import Answer, Division, Entry, Query, count_bits
+from raycaster.rtl.span.records import Aim, Answer, Division, Entry, Query, count_bits
 from raycaster.rtl.span.records import Chain as ChainRecord
 from raycaster.rtl.span.row_slope import row_slope
 from raycaster.rtl.span.set_up import set_up
 from raycaster.rtl.span.span_unit import span_unit
+from raycaster.rtl.span.surface_cells import surface_cells
 from raycaster.rtl.span.sweep import sweep
 from raycaster.scene import UNTURNED, Basis, Light, Scene
 from raycaster.screens import Screen
@@ -166,17 +167,18 @@ def chain_bench(
     columns, place, level = (
         unsigned(column_bits(config)), unsigned(index_bits(config)), tied(0, level_bits(config))
     )  # fmt: skip
+    never = tied(0, 1)
     ask, set_up_ask, sweep_ask, divide, set_up_divide, sweep_divide, divided, read = (bit() for _ in range(8))
     query, set_up_query, sweep_query = (Query(config) for _ in range(3))
     division, set_up_division, sweep_division = (Division(config) for _ in range(3))
     finder = set_up(
-        clk=clk, reset=reset, start=begin_set_up, chain=chain, rects=rects, answer=answer, divided=divided,
-        columns=columns, ask=set_up_ask, query=set_up_query, divide=set_up_divide, division=set_up_division,
-        append=append, entry=entry, count=count, done=set_up_done, config=config,
+        clk=clk, reset=reset, start=begin_set_up, chain=chain, rects=rects, from_light=never, answer=answer,
+        divided=divided, columns=columns, ask=set_up_ask, query=set_up_query, divide=set_up_divide,
+        division=set_up_division, append=append, entry=entry, count=count, done=set_up_done, config=config,
     )  # fmt: skip
     table = entry_table(
-        clk=clk, level=level, append=putting, number=put_number, entry=put, read=read, place=place, stored=tested,
-        config=config,
+        clk=clk, level=level, shadows=never, append=putting, number=put_number, entry=put, read=read, place=place,
+        stored=tested, config=config,
     )  # fmt: skip
     sweeper = sweep(
         clk=clk, reset=reset, start=begin_sweep, gap=gap, column=column, chain_stop=chain.stop, winner=winner,
@@ -185,7 +187,15 @@ def chain_bench(
         inherited=inherited, heir=heir, done=sweep_done, config=config,
     )  # fmt: skip
     evaluator = line_eval(
-        clk=clk, reset=reset, ask=ask, query=query, slope=slope, step=step, answer=answer, config=config
+        clk=clk,
+        reset=reset,
+        ask=ask,
+        query=query,
+        slope=slope,
+        step=step,
+        aim=Aim(config),
+        answer=answer,
+        config=config,
     )
     divider = first_change(
         clk=clk, reset=reset, start=divide, division=division, columns=columns, done=divided, config=config
@@ -378,3 +388,52 @@ def scene_frame(scene: Scene) -> Frame:
     """Return the frame of a scene."""
     table, camera = Rectangles.of_scene(scene), scene.camera
     return Frame(table, camera.position, scene.background, scene.reflections, camera.basis, scene.light)
+
+
+@block
+def cells_bench(
+    clk, reset, slope, step_slope, paint, level, kind, rect, chain, winner, column, stop, seen, step, place, painted,
+    odd_u, odd_v, next_column, stepped, config: Configuration,
+):  # fmt: skip
+    """Walk along the cells of patterns, with the blocks of a span unit.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        slope: `Direction`.
+        step_slope: `Direction`.
+        paint: strobe.
+        level: unsigned, `level_bits` bits.
+        kind: unsigned, 2 bits.
+        rect: `Rect`.
+        chain: `Chain`.
+        winner: `Entry`.
+        column: unsigned, `column_bits` bits.
+        stop: unsigned, `column_bits` bits.
+        seen: unsigned, `level_bits` bits.
+        step: flag.
+        place: unsigned, `column_bits` bits.
+        painted: output strobe.
+        odd_u: output flag.
+        odd_v: output flag.
+        next_column: unsigned output, `column_bits` bits.
+        stepped: output strobe.
+        config: the design.
+    """
+    answer, query, division = Answer(config), Query(config), Division(config)
+    answer.half_line, answer.last, answer.slot = (unconnected(1) for _ in range(3))
+    ask, divide, divided, columns = bit(), bit(), bit(), unsigned(column_bits(config))
+    cells = surface_cells(
+        clk=clk, reset=reset, paint=paint, level=level, kind=kind, rect=rect, chain=chain, winner=winner, column=column,
+        stop=stop, seen=seen, step=step, place=place, answer=answer, divided=divided, columns=columns, ask=ask,
+        query=query, divide=divide, division=division, painted=painted, odd_u=odd_u, odd_v=odd_v,
+        next_column=next_column, stepped=stepped, config=config,
+    )  # fmt: skip
+    evaluator = line_eval(
+        clk=clk, reset=reset, ask=ask, query=query, slope=slope, step=step_slope, aim=Aim(config), answer=answer,
+        config=config,
+    )  # fmt: skip
+    divider = first_change(
+        clk=clk, reset=reset, start=divide, division=division, columns=columns, done=divided, config=config
+    )
+    return instances()

@@ -13,36 +13,46 @@ from raycaster.rtl.span.painter import painter
 from raycaster.rtl.span.run_joiner import run_joiner
 
 
-@by(reflections=[0, 1, 4])
-def test_painter(reflections, leaf_of, random):
-    config = span_config(screen="tiny", rectangles=4, reflections=reflections)
-    ports = {"level": level_bits(config), "share": weight_bits(config), "colour": RGB_BITS, "stop": column_bits(config)}
-    leaf = leaf_of(painter, config, run=lambda: Run(config), **ports)
-    leaf.case({"reset": 1, "paint": 0, "emit": 0})
-    for _ in range(leaf.some(150)):
+@by(patterns=[False, True], reflections=[0, 1, 4])
+def test_painter(patterns, reflections, leaf_of, random):
+    """Mixed colours of all levels; with patterns, runs end where the colour of any level changes."""
+    config = span_config(screen="tiny", rectangles=4, reflections=reflections, patterns=patterns)
+    bits = {"level": level_bits(config), "seen": level_bits(config), "seen_share": weight_bits(config)}
+    bits |= {"seen_colour": RGB_BITS, **dict.fromkeys(("stop", "next_column", "place"), column_bits(config))}
+    leaf = leaf_of(painter, config, run=lambda: Run(config), **bits)
+    leaf.case({"reset": 1, "emit": 0, "run_ready": 0})
+    for _ in range(leaf.some(120)):
         fewer = int(random.integers(reflections + 1))
         level, left, shares = int(random.integers(fewer + 1)), 4**fewer, []
         for number in range(level + 1):
             own = 4 if number == level else int(random.integers(5))
             shares.append(left * own // 4)
             left = left * (4 - own) // 4
-        colours = [random.choice([0, 255, *random.integers(256, size=3)], 3).tolist() for _ in shares]
-        for number, (share, colour) in enumerate(zip(shares, colours, strict=True)):
-            word = int.from_bytes(bytes(colour))
-            paint = {"reset": 0, "paint": 1, "level": number, "share": share, "colour": word}
-            leaf.case(paint | {"picture_reflections": fewer}, {"painted": 1, "run_valid": 0})
         stop = int(random.integers(1, 65))
-        leaf.case({"paint": 0, "emit": 1, "stop": stop})
-        leaf.stimulus += [{"emit": 0}] * (level + 1)
-        leaf.expect({"run_valid": 0})
-        mixed = bytes(
-            sum(share * colour[channel] for share, colour in zip(shares, colours, strict=True)) // 4**fewer
-            for channel in range(3)
-        )
-        wanted = {"run_valid": 1, "run_end": stop, "run_colour": int.from_bytes(mixed)}
-        for _ in range(int(random.integers(3))):
-            leaf.case({"run_ready": 0}, wanted | {"emitted": 0})
-        leaf.case({"run_ready": 1}, wanted | {"emitted": 1})
+        leaf.case({"reset": 0, "emit": 1, "level": level, "stop": stop, "picture_reflections": fewer})
+        place, inputs = -1, {"emit": 0}
+        while place < stop:
+            changes = [int(random.choice([stop, int(random.integers(place + 1, stop + 1))])) for _ in shares]
+            colours = [random.choice([0, 255, *random.integers(256, size=3)], 3).tolist() for _ in shares]
+            for number, (share, colour, change) in enumerate(zip(shares, colours, changes, strict=True)):
+                surface = {"seen_share": share, "seen_colour": int.from_bytes(bytes(colour)), "next_column": change}
+                leaf.case(inputs | surface, {"seen": number, "run_valid": 0, "emitted": 0})
+                inputs = {}
+            place = min(changes) if patterns else stop
+            mixed = bytes(
+                sum(share * colour[channel] for share, colour in zip(shares, colours, strict=True)) // 4**fewer
+                for channel in range(3)
+            )
+            wanted = {"run_valid": 1, "run_end": place, "run_colour": int.from_bytes(mixed)}
+            for _ in range(int(random.integers(3))):
+                leaf.case({"run_ready": 0}, wanted | {"emitted": 0})
+            leaf.case({"run_ready": 1}, wanted | {"emitted": int(place == stop)})
+            inputs = {"run_ready": 0}
+            for number in range(level + 1 if place < stop else 0):
+                for stepped in [0] * int(random.integers(3)) + [1]:
+                    leaf.case(inputs | {"stepped": stepped}, {"step": 1, "seen": number, "place": place})
+                    inputs = {}
+            inputs = {"stepped": 0}
         leaf.case({"run_ready": 0}, {"run_valid": 0})
     leaf.check(spare=True)
 

@@ -11,6 +11,7 @@ from span_vectors import any_chain, any_slope, chain_bench, chain_inputs, chain_
 from vectors import by_axis, named
 
 from raycaster.golden.spans import ANSWER, Drawing, Line, SpanModel
+from raycaster.golden.spans import Chain as Fan
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.hdl.signals import bit
 from raycaster.rtl.common.widths import column_bits
@@ -99,7 +100,7 @@ def test_set_up(options, leaf_of, random):
     assert leaf.few or len(kinds) == (6 if config.reflections else 3)
 
 
-@pytest.mark.parametrize("options", DESIGNS[:3], ids=str)
+@pytest.mark.parametrize("options", [*DESIGNS[:3], {"screen": "tiny", "reflections": 1, "light": True}], ids=str)
 def test_half_lines(options, leaf_of, random):
     """The lines of one rectangle have the values of the contract at the ends of the chain, and come in its order."""
     config = span_config(**options)
@@ -116,6 +117,11 @@ def test_half_lines(options, leaf_of, random):
         slopes, step = any_slope(random, config)
         slope = tuple(Line(*line) for line in zip(slopes, step, strict=True))
         chain, mirror = any_chain(random, config, slope, random_camera(random, table))
+        from_light, surface = int(config.light and random.random() < 0.5), None
+        if from_light:
+            # A fan of rays with any slope, to a surface that is always ahead.
+            chain = Fan(chain.start, chain.stop, tuple(random.integers(512, size=3).tolist()), (False, False, False))
+            surface = Line(int(random.integers(1, 1000)), int(random.integers(10)))
         if not len(seen):
             continue
         place, index = int(random.integers(config.rectangles)), int(random.choice(seen))
@@ -124,7 +130,11 @@ def test_half_lines(options, leaf_of, random):
             corners[index, 1] = corners[index, 0]
             table = Rectangles(corners, table.colours, table.enabled)
         rect = rect_inputs(table, index, "rects_rect")
-        leaf.stimulus += [chain_inputs(chain, *mirror) | rect | {"reset": 0, "start": 1, "rects_usable": 1 << place}]
+        leaf.stimulus += [
+            chain_inputs(chain, *mirror)
+            | rect
+            | {"reset": 0, "start": 1, "rects_usable": 1 << place, "from_light": from_light}
+        ]
         leaf.stimulus += [{"start": 0}] * ANSWER
         ends = [(line.at(chain.start), line.at(chain.stop - 1)) for line in slope]
         for axis, (left, right) in enumerate(ends):
@@ -140,19 +150,25 @@ def test_half_lines(options, leaf_of, random):
             leaf.case({"answer_valid": 1, **named("answer", {"number": axis, "left": left, "right": right})})
         leaf.case({"answer_valid": 0})
         drawing = Drawing(SpanModel(table, (0, 0, 0), (0, 0, 0), config.screen_geometry.columns, 0), slope)
-        lines = drawing.half_lines(chain, next(one for one in drawing.model.table if one.index == index))
+        lines = drawing.half_lines(
+            chain, next(one for one in drawing.model.table if one.index == index), slope, surface
+        )
         leaf.expect({"opened": int(bool(lines)), "ask": 0})
         for number, line in lines.items():
             numbers.add(number)
             leaf.case({}, {"ask": 1, "query_half_line": 1, "query_number": number, "walked": 0})
             leaf.expect({"query_last": int(number == max(lines))})
             leaf.expect({"query_left": chain.start, "query_right": chain.stop - 1})
-            asked_lines[leaf.cycle - 1] = slope, line
+            asked_lines[leaf.cycle - 1] = (*slope, surface), line
         leaf.case({"done": 1}, {"walked": 1, "ask": 0})
         leaf.case({"done": 0}, {"walked": 0})
     outputs = leaf.check(spare=True)
     # A point lies across x, where the slope of a camera that does not turn never changes its sign.
-    assert numbers == {*range(1, 5), *([0] if config.turn else []), *([5] if config.reflections else [])}
+    assert numbers == {
+        *range(1, 5),
+        *([0] if config.turn or config.light else []),
+        *([5] if config.reflections else []),
+    }
     for cycle, (slope, line) in asked_lines.items():
         seen = outputs[cycle]
         components = [(slope[seen[f"query_axis_{one}"]], -1 if seen[f"query_back_{one}"] else 1) for one in (1, 2)]

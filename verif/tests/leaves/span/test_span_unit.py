@@ -11,7 +11,7 @@ from conftest import plant
 from span_vectors import Frame, any_frame, frame_bench, frame_inputs, scene_frame, span_config
 from vectors import config_id
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import LOOKS, Configuration
 from raycaster.golden.picture import describe_difference
 from raycaster.golden.spans import Row, picture_of
 from raycaster.rtl.common.interfaces import Run
@@ -27,17 +27,16 @@ DESIGNS = [
     span_config(**TINY | {"rectangles": 1}, reflections=2, materials=True),
     span_config(**TINY | {"rectangles": 32}, reflections=3, materials=True),
     span_config(**TINY, reflections=2, turn=True),
-    span_config(**TINY, reflections=4, turn=True, materials=True),
+    span_config(**TINY, reflections=2, patterns=True),
+    span_config(**TINY, reflections=0, light=True),
+    span_config(**TINY, reflections=1, turn=True, light=True),
+    span_config(**TINY, reflections=4, turn=True, materials=True, patterns=True, light=True),
 ]
 
 QUICK = 2
 """Frames of each design, if slow tests are left out."""
 
-DRAWN = ("turn", "materials")
-"""Options of `LOOKS` that the unit has."""
-
 SCENES = {name: load_scene(path) for name, path in sorted(packaged_scenes().items())}
-SCENES = {name: scene for name, scene in SCENES.items() if not scene.lacks(DRAWN)}
 
 
 def unit_bench(leaf_of, config: Configuration):
@@ -111,7 +110,7 @@ def test_span_unit(config, leaf_of, random):
 @pytest.mark.parametrize("name", SCENES)
 def test_packaged_scenes(name, leaf_of):
     scene = SCENES[name]
-    looks = {look: True for look in DRAWN if scene.lacks({*DRAWN} - {look})}
+    looks = {look: True for look in LOOKS if scene.lacks({*LOOKS} - {look})}
     config = span_config(screen="tiny", rectangles=max(12, len(scene.rect)), reflections=scene.reflections, **looks)
     leaf = unit_bench(leaf_of, config)
     leaf.screen = config.screen_geometry
@@ -142,6 +141,12 @@ FAULTS = [
     ("corner_finder", "at_right = answer_right == 0", "at_right = 0"),
     ("fold", "towards = winner_back != back_a", "towards = winner_back"),
     ("first_change", "y = {~division_value", "y = {-division_value"),
+    ("cell_walker", "up = above_right >= 0", "up = above_right > 0"),
+    ("cell_walker", "at_once = above_left >= 0", "at_once = 0"),
+    ("surface_cells", "wants_v = painting", "wants_v = 0 && painting"),
+    ("surface_light", "front = light_a > rect_position", "front = light_a >= rect_position"),
+    ("shadow_scan", "tested_stop > next_dark", "tested_stop < next_dark"),
+    ("shadow_finder", "offset = light_q - eye_q", "offset = light_q"),
     ("run_joiner", "same = part_colour == colour", "same = 0"),
 ]
 """A module, and a text of its Verilog with a wrong one."""

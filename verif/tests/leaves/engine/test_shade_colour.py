@@ -5,7 +5,7 @@ from itertools import product
 
 from raycaster.rtl.common.records import Colour
 from raycaster.rtl.common.widths import RGB_BITS, SHADE_BITS
-from raycaster.rtl.exact.shade_colour import shade_colour
+from raycaster.rtl.engine.shade_colour import shade_colour
 
 
 def test_shade_colour(leaf_of):

@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: MIT
+"""The cells of a pattern along a row."""
+
+from myhdl import Signal, always, always_comb, block, enum, instances
+
+from raycaster.configuration import COORDINATE_BITS, Configuration
+from raycaster.hdl.signals import bit, signed, tied, unsigned
+from raycaster.rtl.common.by_axis import along_u, along_v, by_axis
+from raycaster.rtl.common.widths import (
+    AXIS_BITS,
+    CELL_BITS,
+    column_bits,
+    divisor_bits,
+    eye_bits,
+    line_bits,
+    line_factor_bits,
+)
+from raycaster.rtl.span.records import NUMBER_BITS, PLACE_BITS
+
+WalkState = enum("IDLE", "ASK", "ANSWER", "DIVIDE")
+
+
+@block
+def cell_walker(
+    clk, reset, start, find, on_v, grid, known_cell, column, answer, divided, columns, ask, query, divide,
+    division, found_cell, next_column, rises, done, config: Configuration,
+):  # fmt: skip
+    """Find the column in which the next cell of a surface's pattern begins, along u or v, and first the present cell.
+
+    A point of the surface is at P = E + N D' / e along the axis. It is at the edge m of the cells or beyond where N D'
+    - (m cell - E) e is not negative: a line, as for a rectangle's bound. Along the row the cells follow each other in
+    one direction, up if the edge above the present cell is reached in the span, down if the edge below it is left. If
+    that has already happened in the present column, the next cell begins there too.
+
+    The present cell is the quotient of P e, which is the line of edge 0, and of e times the cell's size.
+
+    Args:
+        clk: the clock.
+        reset: flag; synchronous reset to idle.
+        start: strobe; begins while idle.
+        find: flag; read with start: cell is not known.
+        on_v: flag; along v, otherwise along u. Constant from start to done, like grid and column.
+        grid: `Grid` of the grid.
+        known_cell: unsigned, `PLACE_BITS` bits; the present cell, read with start without find.
+        column: unsigned, `column_bits` bits; the present column.
+        answer: `Answer`; read after each query.
+        divided: strobe; `first_change` is done.
+        columns: unsigned, `column_bits` bits; read with divided.
+        ask: output strobe; `line_eval` must answer the query.
+        query: output `Query`; valid with ask.
+        divide: output strobe; `first_change` must take the division.
+        division: output `Division`; valid with divide.
+        found_cell: unsigned output, `PLACE_BITS` bits; the present cell, valid with done.
+        next_column: unsigned output, `column_bits` bits; the column in which the next cell begins, or grid.stop.
+            Valid with done.
+        rises: output flag; the next cell's number is greater. Valid with done, don't care if next_column is grid.stop.
+        done: output strobe.
+        config: the design, with patterns.
+    """
+    width, factor_bits, far_bits = column_bits(config), line_factor_bits(config), eye_bits(config)
+    edge_bits, value_bits, growth_bits = COORDINATE_BITS + 1, line_bits(config), divisor_bits(config)
+    smallest = COORDINATE_BITS - PLACE_BITS
+
+    state = Signal(WalkState.IDLE)
+    finding, second, up, down, at_once, decides, crosses, rose = (bit() for _ in range(8))
+    present, place = unsigned(PLACE_BITS), unsigned(PLACE_BITS)
+    number = unsigned(PLACE_BITS + 1)
+    limit = unsigned(edge_bits)
+    whole_limit, offset, eye_w, to_plane, factor_1, factor_2 = (signed(factor_bits) for _ in range(6))
+    axis_u, axis_v, axis_w, axis_1 = (unsigned(AXIS_BITS) for _ in range(4))
+    back_w, back_1 = bit(), bit()
+    above_left, above_right = signed(value_bits), signed(value_bits)
+    above_growth, growth, slope = (signed(growth_bits) for _ in range(3))
+    value, eighth = signed(value_bits), signed(value_bits)
+    last, quotient = unsigned(width), unsigned(width)
+    none, asked_number = tied(0, 1), unsigned(NUMBER_BITS)
+    axes = [tied(axis, AXIS_BITS) for axis in range(3)]
+    choices = (
+        by_axis(grid.axis, *along_u(*axes), axis_u, width=AXIS_BITS),
+        by_axis(grid.axis, *along_v(*axes), axis_v, width=AXIS_BITS),
+    )
+
+    @always_comb
+    def choose_axis():
+        axis_w.next = axis_u
+        back_w.next = grid.back_u
+        eye_w.next = grid.eye_u
+        if on_v:
+            axis_w.next = axis_v
+            back_w.next = grid.back_v
+            eye_w.next = grid.eye_v
+
+    # The edge above the present cell is asked for first, then the one below it.
+    @always_comb
+    def choose_edge():
+        number.next = present + 1
+        if second:
+            number.next = present
+
+    @always_comb
+    def scale():
+        limit.next = 0
+        if not finding:
+            for size in range(1 << CELL_BITS):
+                if grid.cell == size:
+                    limit.next = (number << (size + smallest)) % (1 << edge_bits)
+
+    @always_comb
+    def extend():
+        whole_limit.next = limit
+        to_plane.next = grid.distance
+
+    @always_comb
+    def measure():
+        offset.next = whole_limit - eye_w
+
+    # While the cell is being found, the second line is e itself.
+    @always_comb
+    def choose_line():
+        axis_1.next = axis_w
+        back_1.next = back_w
+        factor_1.next = to_plane
+        factor_2.next = offset
+        if finding and second:
+            axis_1.next = grid.axis
+            back_1.next = grid.back
+            factor_1.next = 1
+            factor_2.next = 0
+
+    @always_comb
+    def see_last():
+        last.next = (grid.stop - 1) % (1 << width)
+        asked_number.next = second
+
+    asked = query.joined(
+        from_light=none, left=column, right=last, strict=none, axis_1=axis_1, back_1=back_1, factor_1=factor_1,
+        axis_2=grid.axis, back_2=grid.back, factor_2=factor_2, half_line=none, last=none, slot=none,
+        number=asked_number,
+    )  # fmt: skip
+
+    @always_comb
+    def request():
+        ask.next = state == WalkState.ASK
+        query.word.next = asked
+
+    @always(clk.posedge)
+    def keep_first():
+        if (state != WalkState.IDLE) and answer.valid and (answer.number == 0):
+            above_left.next = answer.left
+            above_right.next = answer.right
+            above_growth.next = answer.growth
+
+    @always_comb
+    def see_direction():
+        decides.next = (state == WalkState.ANSWER) and answer.valid and (answer.number == 1)
+        up.next = above_right >= 0
+        down.next = (above_right < 0) and (answer.right < 0)
+        at_once.next = answer.left < 0
+        if above_right >= 0:
+            at_once.next = above_left >= 0
+
+    @always_comb
+    def see_slope():
+        eighth.next = above_left >> smallest
+        slope.next = answer.left[growth_bits:].signed()
+
+    @always_comb
+    def decide():
+        crosses.next = decides and (finding or ((up or down) and not at_once))
+        value.next = answer.left
+        growth.next = answer.growth
+        if finding:
+            value.next = eighth
+            growth.next = slope
+        elif up:
+            value.next = above_left
+            growth.next = above_growth
+
+    crossed = division.joined(value=value, growth=growth)
+
+    @always_comb
+    def start_division():
+        divide.next = crosses
+        division.word.next = crossed
+
+    @always_comb
+    def see_quotient():
+        quotient.next = (columns - 1) % (1 << width)
+
+    @always_comb
+    def see_place():
+        place.next = 0
+        for size in range(PLACE_BITS):
+            if grid.cell == size:
+                place.next = quotient[PLACE_BITS:] >> size
+
+    @always_comb
+    def see_done():
+        done.next = (decides and not crosses) or ((state == WalkState.DIVIDE) and divided and not finding)
+        found_cell.next = present
+        rises.next = up
+        next_column.next = grid.stop
+        if state == WalkState.DIVIDE:
+            rises.next = rose
+            next_column.next = (column + columns) % (1 << width)
+        elif up or down:
+            next_column.next = column
+
+    @always(clk.posedge)
+    def step():
+        if reset:
+            state.next = WalkState.IDLE
+        elif start:
+            state.next = WalkState.ASK
+        elif state == WalkState.ASK:
+            if second:
+                state.next = WalkState.ANSWER
+        elif decides:
+            state.next = WalkState.IDLE
+            if crosses:
+                state.next = WalkState.DIVIDE
+        elif (state == WalkState.DIVIDE) and divided:
+            state.next = WalkState.IDLE
+            if finding:
+                state.next = WalkState.ASK
+
+    @always(clk.posedge)
+    def follow():
+        if start:
+            finding.next = find
+            present.next = known_cell
+            second.next = False
+        elif state == WalkState.ASK:
+            second.next = True
+        elif (state == WalkState.DIVIDE) and divided:
+            second.next = False
+            finding.next = False
+            if finding:
+                present.next = place
+        if decides:
+            rose.next = up
+
+    return instances()

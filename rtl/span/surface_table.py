@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: MIT
+"""The surfaces that rays see on their way, as they were painted."""
+
+from myhdl import always, always_comb, block, instances
+
+from raycaster.configuration import Configuration
+from raycaster.hdl.signals import unsigned
+from raycaster.rtl.common.widths import level_bits
+
+
+@block
+def surface_table(clk, paint, level, given, seen, shown, config: Configuration):
+    """Hold the surface of each level, the number of mirrors before it.
+
+    Args:
+        clk: the clock.
+        paint: strobe; from now on a ray sees this surface at this level.
+        level: unsigned, `level_bits` bits; read with paint.
+        given: `Surface`; read with paint.
+        seen: unsigned, `level_bits` bits; the level that is read.
+        shown: output `Surface`; that of this level. Combinational.
+        config: the design.
+    """
+    memory = [unsigned(len(given.word)) for _ in range(1 << level_bits(config))]
+
+    @always(clk.posedge)
+    def keep():
+        if paint:
+            memory[level].next = given.word
+
+    @always_comb
+    def show():
+        shown.word.next = memory[seen]
+
+    return instances()
