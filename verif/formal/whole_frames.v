@@ -26,8 +26,9 @@
 // [faults]
 // "units 2, rows 3" = ["frame_switch.upper 0 in 20", "frame_list.first 0 in 20", "frame_switch.ready 1 in 20",
 //   "frame_switch.take_scene as start_screen in 20", "row_collector.rows_left edge in 20",
-//   "row_collector.turn 0 in 20", "row_collector.room 1 in 20", "row_collector.write late in 20", "row_dealer.busy 0 in 20",
-//   "row_dealer.turn 0 in 20", "frame_switch.drawn_run 1 in 20", "row_collector.whole late in 20"]
+//   "row_collector.turn 0 in 20", "row_collector.room 1 in 20", "row_collector.write late in 20",
+//   "row_dealer.busy 0 in 20", "row_dealer.turn 0 in 20", "frame_switch.drawn_run 1 in 20",
+//   "row_collector.whole late in 20"]
 
 module whole_frames;
 frame_list dut (.*);

@@ -11,7 +11,7 @@ from raycaster.rtl.span.lists import ListEntry, entry_bits
 COLUMNS, ROWS = 8, 4
 
 
-@by(entries=[20, 16], pixels=[1, 2], doubling=[1, 2], clocks=[1, 2])
+@by(entries=[16, 20], pixels=[1, 2], doubling=[1, 2], clocks=[1, 2])
 def test_list_player(entries, pixels, doubling, clocks, leaf_of, random):
     made = {"written": lambda: ListEntry(COLUMNS, PIXEL_BITS), "scan": Scan}
     ports = {"write_place": entry_bits(entries), "shown": pixels * PIXEL_BITS}

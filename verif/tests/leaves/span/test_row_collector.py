@@ -42,7 +42,8 @@ def test_row_collector(units, pause, leaf_of, random):
             ends.add("full")
         model.clock(bool(new_frame), first, head, bool(reset or full))
         if new_frame:
-            runs = [run for _ in range(ROWS) for run in any_row(random, COLUMNS)]
+            # After the frame comes a run that belongs to none.
+            runs = [run for _ in range(ROWS + 1) for run in any_row(random, COLUMNS)]
         elif reset or full:
             runs = []
     leaf.check(settled=3)

@@ -17,7 +17,7 @@ def test_row_dealer(rows, units, leaf_of, random):
     for _ in range(2000):
         reset = int(random.random() < 0.01)
         idle = model.row == rows or not (model.dealing or model.settles or model.first_row)
-        new_frame = int(not reset and idle and not model.busy and random.random() < 0.3)
+        new_frame = int(idle and not model.busy and random.random() < 0.3)
         done = {unit for unit in model.busy if random.random() < 0.3}
         room = [random.random() < 0.8 for _ in range(units)]
         start = model.start(room, done)
