@@ -11,7 +11,7 @@ from pydantic.fields import FieldInfo
 from systemrdl.node import FieldNode, Node, RegNode
 
 from raycaster.buses import BUSES
-from raycaster.configuration import LOOK_NAMES
+from raycaster.configuration import FEATURES
 from raycaster.design.decide import OPTIONS, configure
 from raycaster.docs.timing import CONFIGURATION
 from raycaster.registers import compile_registers
@@ -47,8 +47,8 @@ def offers() -> str:
         scales = sorted(engine.scales(engine.facts.screens[place])) if place in engine.facts.screens else []
         return f"scales {', '.join(map(str, scales))}" if len(scales) > 1 else "yes" * len(scales)
 
-    rows = [[what, f"`{look.upper()}=1`", *("yes" if look in one.looks else "" for one in facts)]
-            for look, what in LOOK_NAMES.items()]  # fmt: skip
+    rows = [[what, f"`{feature.upper()}=1`", *("yes" if feature in one.features else "" for one in facts)]
+            for feature, what in FEATURES.items()]  # fmt: skip
     rows.append(["2 pixels per clock", "`PIXELS=2`", *("" if one.line_buffered else "yes" for one in facts)])
     rows.append(["fraction bits, rounding", "`FRACTION_BITS=`", *("yes" if one.divides else "" for one in facts)])
     screens = {place: screen for one in facts for place, screen in one.screens.items()}

@@ -64,7 +64,7 @@ def feature_designs() -> list[Counted]:
     designs = []
     for engine in ENGINES.values():
         top = "ray_unit" if engine.facts.divides else TOP
-        for chosen in ([], *([name] for name in engine.facts.looks), engine.facts.looks):
+        for chosen in ([], *([name] for name in engine.facts.features), engine.facts.features):
             options = dict.fromkeys(chosen, 1)
             labels = {"engine": engine.facts.name, "module": top, "options": options}
             designs.append((labels, configure(engine=engine.facts.name, **options), top))

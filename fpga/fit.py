@@ -100,7 +100,7 @@ def candidates(
         UserError: the scene or the options are wrong.
     """
     scene = load_scene(path)
-    fitting = [name for name, engine in ENGINES.items() if not scene.lacks(engine.facts.looks)]
+    fitting = [name for name, engine in ENGINES.items() if not scene.lacks(engine.facts.features)]
     for engine in (options["engine"],) if "engine" in options else fitting:
         for chosen, general, wrong in _arithmetic(engine, path, options, error):
             yield Candidate(general, GENERAL, wrong, chosen)

@@ -12,5 +12,5 @@ from raycaster.golden.seed_engine import SeedModel
 def model_of(config: Configuration) -> Model:
     """Return the golden model whose pictures a design must draw."""
     if config.facts.divides:
-        return SeedModel(config.fraction_bits, config.rounding, looks=config.looks)
-    return ExactModel(looks=config.looks)
+        return SeedModel(config.fraction_bits, config.rounding, features=config.features)
+    return ExactModel(features=config.features)

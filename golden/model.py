@@ -12,7 +12,7 @@ from typing import NamedTuple, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike
 
-from raycaster.configuration import LOOKS
+from raycaster.configuration import FEATURES
 from raycaster.golden.colour import blend, hit_colours
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.shadows import Shading, dim, shade
@@ -139,8 +139,8 @@ class Trace:
 class Model(ABC):
     """A golden model: the arithmetic of an engine, on whole arrays of rays."""
 
-    looks: Collection[str] = field(default=LOOKS, kw_only=True)
-    """Options of `LOOKS` that scenes may need."""
+    features: Collection[str] = field(default=tuple(FEATURES), kw_only=True)
+    """Options of `FEATURES` that scenes may need."""
 
     @abstractmethod
     def meetings(
@@ -217,9 +217,9 @@ class Model(ABC):
             uint8 (rows, columns, 3).
 
         Raises:
-            ValueError: the scene needs an option that is not among `looks`.
+            ValueError: the scene needs an option that is not among `features`.
         """
-        if lacking := scene.lacks(self.looks):
+        if lacking := scene.lacks(self.features):
             raise ValueError(f"a design without {' and '.join(lacking)} does not draw this scene")
         reflections = scene.reflections if reflections is None else reflections
         camera, rectangles = scene.camera, Rectangles.of_scene(scene)

@@ -32,7 +32,7 @@ class SeedModel(Model):
     rounding: Rounding = "truncate"
     """Rounding of quotients."""
 
-    looks: Collection[str] = field(default=("materials", "patterns"), kw_only=True)
+    features: Collection[str] = field(default=("materials", "patterns"), kw_only=True)
 
     def bound(self, origin: np.ndarray, slope: np.ndarray, way: np.ndarray) -> np.ndarray:
         """Bound the error of a primary ray's hit point, in world units: one unit in the last place, or half of one."""

@@ -49,16 +49,13 @@ if TYPE_CHECKING:
 else:
     BusName = Literal[*BUSES]
 
-LOOK_NAMES = {
+FEATURES = {
     "turn": "a camera that turns",
     "materials": "rectangles that mirror more or less than half",
     "patterns": "rectangles with patterns",
     "light": "a light",
 }
-"""Purposes of the options for optional features of scenes."""
-
-LOOKS = tuple(LOOK_NAMES)
-"""Options for optional features of scenes."""
+"""Options for optional features of scenes, each with its purpose."""
 
 Rounding = Literal["truncate", "nearest"]
 """Rounding of quotients: toward zero, or to nearest."""
@@ -82,7 +79,7 @@ class Facts:
         screens: screens that it can fill, by name and rows.
         rect_latency: cycles from `fetch` to the rectangle.
         margin: distance by which a primary ray that hits a rectangle may pass outside its bounds, in world units.
-        lacks: options of `LOOKS` that it refuses, each with the reason.
+        lacks: options of `FEATURES` that it refuses, each with the reason.
         divides: True if it forms quotients, which have fraction bits and are rounded.
         line_buffered: True if units fill a line buffer ahead of the monitor, group by group.
     """
@@ -100,9 +97,9 @@ class Facts:
     line_buffered: bool = True
 
     @property
-    def looks(self) -> tuple[str, ...]:
-        """Options of `LOOKS` that a design can have."""
-        return tuple(look for look in LOOKS if look not in self.lacks)
+    def features(self) -> tuple[str, ...]:
+        """Options of `FEATURES` that a design can have."""
+        return tuple(name for name in FEATURES if name not in self.lacks)
 
 
 @validated_dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid"))
@@ -194,9 +191,9 @@ class Configuration(Options):
     facts: Facts = field(compare=False, repr=False)
 
     @property
-    def looks(self) -> tuple[str, ...]:
-        """Options of `LOOKS` that the design has."""
-        return tuple(name for name in LOOKS if getattr(self, name))
+    def features(self) -> tuple[str, ...]:
+        """Options of `FEATURES` that the design has."""
+        return tuple(name for name in FEATURES if getattr(self, name))
 
     @property
     def table(self) -> int:
@@ -269,11 +266,11 @@ class Configuration(Options):
         fixed = f"-{self.fixed.name}" if self.fixed else ""
         # Defaults are left out of the name.
         culling = "" if self.fixed or self.culling == self.facts.divides else f"-k{int(self.culling)}"
-        looks = "".join(f"-{name}" for name in self.looks)
+        features = "".join(f"-{name}" for name in self.features)
         bus = "" if self.bus == OWN else f"-{self.bus}"
         return (
             f"{self.engine}-{self.screen}{self.rows}{scale}-u{self.units}-r{self.rectangles}-m{self.reflections}"
-            f"{quotients}-c{self.colour_bits}{culling}{looks}{bus}{fixed}"
+            f"{quotients}-c{self.colour_bits}{culling}{features}{bus}{fixed}"
         )
 
 

@@ -297,9 +297,9 @@ class Scene(_Strict):
             "light": self.light is not None,
         }
 
-    def lacks(self, looks: Collection[str]) -> list[str]:
+    def lacks(self, features: Collection[str]) -> list[str]:
         """Return the options that the picture needs, except these."""
-        return [name for name, is_needed in self.needs.items() if is_needed and name not in looks]
+        return [name for name, is_needed in self.needs.items() if is_needed and name not in features]
 
 
 def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:

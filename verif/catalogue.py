@@ -37,13 +37,13 @@ class Case:
     scene: Scene
 
 
-def catalogue(looks: Collection[str] = ()) -> list[Case]:
-    """Return all cases that need no options of `LOOKS` except these.
+def catalogue(features: Collection[str] = ()) -> list[Case]:
+    """Return all cases that need no options of `FEATURES` except these.
 
     Every scene has at most 12 rectangles, and two reflections; a design with more reflections may show it with more.
     """
     cases = [_case(*entry) for family in _FAMILIES for entry in family()]
-    found = [case for case in cases if not case.scene.lacks(looks)]
+    found = [case for case in cases if not case.scene.lacks(features)]
     names = [case.name for case in found]
     if len(set(names)) != len(names):
         raise ValueError("two cases have the same name")

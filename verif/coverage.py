@@ -120,10 +120,10 @@ def runs_of(design: Configuration, model: Model, build: Path) -> list[Run]:
         Run(model, build, "verif.benches.underrun_bench"),
     ]
     # More rectangles would not meet the row budget.
-    scenes_of_cases = enumerate(case.scene for case in catalogue(design.looks))
+    scenes_of_cases = enumerate(case.scene for case in catalogue(design.features))
     lit = tuple(number for number, scene in scenes_of_cases if scene.light and len(scene.rect) <= LIT_RECTANGLES)
     benches += [Run(model, build, "verif.soak.bench", cases=lit)] if lit else []
-    scenes = [path for path in packaged_scenes().values() if not load_scene(path).lacks(design.looks)]
+    scenes = [path for path in packaged_scenes().values() if not load_scene(path).lacks(design.features)]
     return [*benches, *(Run(model, build, "sim.frame_bench", scene) for scene in scenes)]
 
 

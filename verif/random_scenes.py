@@ -28,14 +28,14 @@ def style_of(seed: int) -> str:
     return STYLES[seed % len(STYLES)]
 
 
-def random_scene(seed: int, rectangles: int, reflections: int, looks: Collection[str] = ()) -> Scene:
+def random_scene(seed: int, rectangles: int, reflections: int, features: Collection[str] = ()) -> Scene:
     """Generate the scene of a seed; its title has the seed and the style.
 
     Args:
         seed: the same seed always gives the same scene.
         rectangles: maximum number of rectangles, 1 or more.
         reflections: maximum number of reflections.
-        looks: options of `LOOKS` that the scene may need; the rest of it does not depend on them.
+        features: options of `FEATURES` that the scene may need; the rest of it does not depend on them.
     """
     rng = np.random.default_rng(seed)
     style = style_of(seed)
@@ -44,16 +44,16 @@ def random_scene(seed: int, rectangles: int, reflections: int, looks: Collection
     bounces, background = int(rng.integers(reflections + 1)), tuple(rng.integers(256, size=3).tolist())
     if camera is None:
         camera = random_camera(rng, table)
-    angles = _angles(rng) if "turn" in looks else {}
+    angles = _angles(rng) if "turn" in features else {}
     table = random_looks(rng, table)
-    light = random_light(rng, table, camera) if "light" in looks and rng.random() < 0.9 else None
+    light = random_light(rng, table, camera) if "light" in features and rng.random() < 0.9 else None
     return Scene(
         title=f"{style} of seed {seed}",
         reflections=bounces,
         background=background,
         camera=Camera(position=tuple(camera.tolist()), **angles),
         light=light,
-        rect=tuple(rectangle_of(table, index, looks) for index in range(len(table))),
+        rect=tuple(rectangle_of(table, index, features) for index in range(len(table))),
     )
 
 
@@ -63,13 +63,13 @@ def _angles(rng: np.random.Generator) -> dict[str, float]:
     return dict(zip(("yaw", "pitch", "roll"), np.where(rng.random(3) < 0.2, 0, some).tolist(), strict=True))
 
 
-def rectangle_of(table: Rectangles, index: int, looks: Collection[str] = ()) -> Rectangle:
+def rectangle_of(table: Rectangles, index: int, features: Collection[str] = ()) -> Rectangle:
     """Return a table's rectangle as in a scene file, with its look as far as the design has it."""
     corners, colour = table.corners[index].tolist(), tuple(table.colours[index].tolist())
     entries: dict[str, object] = {"corners": corners, "colour": colour}
-    if "materials" in looks:
+    if "materials" in features:
         entries["mirror"] = int(table.mirrors[index]) / 4
-    if "patterns" in looks and table.kinds[index]:
+    if "patterns" in features and table.kinds[index]:
         entries |= {"pattern": PATTERNS[table.kinds[index]], "cell": int(table.cells[index])}
         entries["colour2"] = tuple(table.colours_2[index].tolist())
     return Rectangle.model_validate(entries)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from raycaster.configuration import LOOK_NAMES
+from raycaster.configuration import FEATURES
 from raycaster.design.options import CommandParser
 from raycaster.output import Console, Table
 from raycaster.rtl.engines import ENGINES
@@ -26,10 +26,10 @@ def main(argv: Sequence[str] | None = None) -> None:
     table = Table("scene", "rows", "reflections", "rectangles", "needs", texts=("needs",))
     for name, path in packaged_scenes().items():
         scene = load_scene(path)
-        needs = ", ".join(MARKS.get(look, look) for look in scene.lacks(()))
+        needs = ", ".join(MARKS.get(feature, feature) for feature in scene.lacks(()))
         table.add_row(name, scene.rows, scene.reflections, len(scene.rect), needs)
     console = Console()
     console.print(table)
-    for look, what in LOOK_NAMES.items():
-        engines = ", ".join(name for name, each in ENGINES.items() if look in each.facts.looks)
-        console.print(f"{MARKS.get(look, look)}: {what}; engines: {engines}", style="dim")
+    for feature, what in FEATURES.items():
+        engines = ", ".join(name for name, each in ENGINES.items() if feature in each.facts.features)
+        console.print(f"{MARKS.get(feature, feature)}: {what}; engines: {engines}", style="dim")

@@ -11,7 +11,7 @@ from pydantic.dataclasses import dataclass as validated_dataclass
 from pydantic.fields import FieldInfo
 
 from raycaster.complaints import as_typed, refusal
-from raycaster.configuration import LOOK_NAMES, Configuration, ConfigurationError, Options
+from raycaster.configuration import FEATURES, Configuration, ConfigurationError, Options
 from raycaster.errors import listed
 from raycaster.rtl.engine.engine import Engine
 from raycaster.rtl.engines import ENGINES
@@ -49,9 +49,9 @@ def decided(options: Options) -> Configuration:
         raise ValueError(f"fixed: is for {len(fixed.passes) - 1} reflections, not {options.reflections}")
     rows = _rows(options, engine)
     scale = _scale(options, engine, rows)
-    for look, reason in engine.facts.lacks.items():
-        if getattr(options, look):
-            raise ValueError(f"{look}: {reason}; {_instead(options)}")
+    for feature, reason in engine.facts.lacks.items():
+        if getattr(options, feature):
+            raise ValueError(f"{feature}: {reason}; {_instead(options)}")
     if options.pixels > 1 and engine.facts.line_buffered:
         raise ValueError(
             f"pixels: the {options.engine} engine has 1 per clock, not {options.pixels}; {_instead(options)}"
@@ -64,7 +64,7 @@ def decided(options: Options) -> Configuration:
         "scale": scale,
         "divider_bits": 0,
         "culling": engine.culls(options) if options.culling is None else options.culling,
-        **{look: bool(getattr(options, look)) for look in LOOK_NAMES},
+        **{feature: bool(getattr(options, feature)) for feature in FEATURES},
         "facts": engine.facts,
     }
     config = Configuration(**{**vars(options), **decisions})
@@ -79,7 +79,7 @@ def decided(options: Options) -> Configuration:
 
 def _lacking(engine: Engine, options: Options) -> Iterator[str]:
     """Yield the wanted features and the screen, in words, that an engine does not have."""
-    yield from (name for look, name in LOOK_NAMES.items() if getattr(options, look) and look in engine.facts.lacks)
+    yield from (FEATURES[name] for name in engine.facts.lacks if getattr(options, name))
     if options.pixels > 1 and engine.facts.line_buffered:
         yield f"{options.pixels} pixels per clock"
     screens = [screen for place, screen in engine.facts.screens.items() if _matches(place, options)]

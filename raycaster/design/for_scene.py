@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.complaints import as_typed
-from raycaster.configuration import LOOK_NAMES, Configuration, ConfigurationError
+from raycaster.configuration import FEATURES, Configuration, ConfigurationError
 from raycaster.design.decide import configure
 from raycaster.errors import UserError
 from raycaster.rtl.engines import ENGINES
@@ -55,19 +55,19 @@ def packaged_for(options: Mapping[str, Any]) -> list[Path]:
 
 def left_out(options: Mapping[str, Any]) -> dict[str, list[str]]:
     """Return the names of the packaged scenes that hardware with these options cannot show, by the reason."""
-    lacking = {look: f"needs {what}" for look, what in LOOK_NAMES.items() if str(options.get(look)) in ("0", "False")}
+    lacking = {name: f"needs {what}" for name, what in FEATURES.items() if str(options.get(name)) in ("0", "False")}
     if engine := ENGINES.get(str(options.get("engine"))):
-        lacking |= {look: f"needs {LOOK_NAMES[look]}: {reason}" for look, reason in engine.facts.lacks.items()}
+        lacking |= {feature: f"needs {FEATURES[feature]}: {reason}" for feature, reason in engine.facts.lacks.items()}
     found = defaultdict(list)
     for name, path in packaged_scenes().items():
         needs = load_scene(path).needs
-        if reason := next((reason for look, reason in lacking.items() if needs[look]), ""):
+        if reason := next((reason for feature, reason in lacking.items() if needs[feature]), ""):
             found[reason].append(name)
     return found
 
 
 def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> Design:
-    """Read a scene and choose its hardware; rows, reflections and looks that are not given come from the scene.
+    """Read a scene and choose its hardware; rows, reflections and features that are not given come from the scene.
 
     If no engine is given, the first one that can show the scene is chosen.
 
@@ -85,7 +85,7 @@ def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, An
         chosen["rows"] = scene.rows
     chosen.setdefault("reflections", scene.reflections)
     needed = scene.lacks(())
-    able = (name for name, engine in ENGINES.items() if not scene.lacks(engine.facts.looks))
+    able = (name for name, engine in ENGINES.items() if not scene.lacks(engine.facts.features))
     chosen.setdefault("engine", next(able))
     try:
         configuration = configure(**dict.fromkeys(needed, True) | chosen)
@@ -96,8 +96,8 @@ def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, An
         if option == "turn":
             option = "camera." + next(name for name in ("yaw", "pitch", "roll") if getattr(scene.camera, name))
         raise ConfigurationError(f"{path}: {option}: {reason}") from None
-    if lacking := scene.lacks(configuration.looks):
-        raise UserError(f"{path}: the scene needs {LOOK_NAMES[lacking[0]]}; leave out {as_typed(lacking[0])}")
+    if lacking := scene.lacks(configuration.features):
+        raise UserError(f"{path}: the scene needs {FEATURES[lacking[0]]}; leave out {as_typed(lacking[0])}")
     load_scene(path, configuration.rectangles)  # refuses more rectangles than the hardware holds
     # Use the hardware's number if it was given; a default design may compute more than the scene needs.
     reflections = configuration.reflections if "reflections" in options else scene.reflections

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.complaints import as_typed
-from raycaster.configuration import LOOKS, MOST_RECTANGLES, Configuration
+from raycaster.configuration import FEATURES, MOST_RECTANGLES, Configuration
 from raycaster.design.decide import configure
 from raycaster.design.for_scene import Design, design_for
 from raycaster.errors import UserError
@@ -112,7 +112,7 @@ def fix(path: Path, options: Mapping[str, Any], scope: str) -> Fixing:
     fixed = FixedScene(rectangles, (primary or 1, *reflected), shadows=tuple(shadows))
     if scope == "all":
         fixed = with_camera(fixed, scene)
-    kept = {name: getattr(general.configuration, name) for name in ("engine", "rows", *LOOKS)}
+    kept = {name: getattr(general.configuration, name) for name in ("engine", "rows", *FEATURES)}
     given = {**options, **kept, "reflections": reflections, "fixed": fixed}
     design = Design(path, scene, configure(**given), reflections)
     return Fixing(design, general, _omissions(scene, reasons, with_shadows=bool(fixed.shadows)))

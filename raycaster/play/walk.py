@@ -45,9 +45,9 @@ def design_to_walk(path: Path, options: Mapping[str, Any]) -> Design:
     Raises:
         UserError: the scene or an option is wrong; one line.
     """
-    defaults: dict[str, Any] = {"engine": EXACT.name} if load_scene(path).light else dict(FASTEST)
+    defaults: dict[str, Any] = {"engine": EXACT.facts.name} if load_scene(path).light else dict(FASTEST)
     engine = ENGINES.get(options.get("engine", defaults["engine"]))
-    return design_for(path, options, defaults | ({"turn": True} if engine and "turn" in engine.facts.looks else {}))
+    return design_for(path, options, defaults | ({"turn": True} if engine and "turn" in engine.facts.features else {}))
 
 
 class Walker:

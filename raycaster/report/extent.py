@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from raycaster.configuration import LOOKS, Configuration
+from raycaster.configuration import FEATURES, Configuration
 from raycaster.report.designs import exact_designs, seed_designs
 from raycaster.verif.catalogue import Case, catalogue
 
@@ -34,7 +34,7 @@ class Extent:
 
 def extent(quick: bool) -> Extent:
     """Return the full extent, or a quick one of two minutes."""
-    cases = catalogue(LOOKS)
+    cases = catalogue(FEATURES)
     if quick:
         return Extent(
             fractions=(0, 2, 4), worlds=24,

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 import raycaster
-from raycaster.configuration import LOOKS, Configuration, Rounding
+from raycaster.configuration import FEATURES, Configuration, Rounding
 from raycaster.convert.take_home import TOP
 from raycaster.design.decide import configure
 from raycaster.design.for_scene import design_for
@@ -93,7 +93,7 @@ def name_of(source: str) -> str:
 
 @cache
 def _cases() -> dict[str, Scene]:
-    return {case.name: case.scene for case in catalogue(LOOKS)}
+    return {case.name: case.scene for case in catalogue(FEATURES)}
 
 
 @cache
@@ -223,7 +223,7 @@ def leaving_out(source: str, engine: str) -> Iterator[tuple[str, Configuration]]
     own = design_for(Path(source), {"engine": engine}).configuration
     options: dict[str, Any] = {
         "engine": engine, "rows": own.rows, "rectangles": max(RECTANGLES, len(scene.rect)), "allow_underrun": True,
-        "reflections": GENERAL_REFLECTIONS, "culling": False, **dict.fromkeys(own.facts.looks, True),
+        "reflections": GENERAL_REFLECTIONS, "culling": False, **dict.fromkeys(own.facts.features, True),
     }  # fmt: skip
     yield "", configure(**options)
     for what, name, value in (

@@ -135,7 +135,7 @@ def _shared(scenes: Mapping[Path, Scene]) -> dict[Path, dict[str, Any]]:
     groups: dict[bool, dict[Path, Scene]] = defaultdict(dict)
     for path, scene in scenes.items():
         if scene.lacks(()):
-            groups[bool(scene.lacks(SEED.facts.looks))][path] = scene
+            groups[bool(scene.lacks(SEED.facts.features))][path] = scene
     found: dict[Path, dict[str, Any]] = {}
     for group in groups.values():
         if len(group) > 1:

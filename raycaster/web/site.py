@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.complaints import LONGEST_SHOWN
-from raycaster.configuration import LOOKS, MOST_RECTANGLES, WORLD_SIZE, Configuration
+from raycaster.configuration import FEATURES, MOST_RECTANGLES, WORLD_SIZE, Configuration
 from raycaster.design.decide import configure
 from raycaster.design.options import CommandParser, add_build_option
 from raycaster.errors import UserError
@@ -85,7 +85,7 @@ def _build(model: Model, build: Path) -> tuple[bytes, dict[str, Any]]:
     wasm = machine_wasm(config, processor=model.processor, taps=model.taps, build=build).read_bytes()
     return wasm, {
         "engine": config.facts.code,
-        **{name: int(getattr(config, name)) for name in LOOKS},
+        **{name: int(getattr(config, name)) for name in FEATURES},
         **{name: getattr(config, name) for name in ("rectangles", "reflections", "fraction_bits")},
         **{name: getattr(screen, name) for name in ("columns", "rows", "horizon_row", "scale", "doubling")},
         **({"taps": tap_facts(config)} if model.taps else {}),
@@ -127,7 +127,7 @@ def _settings(*, test: bool) -> dict[str, Any]:
             "rectangles": WALKS_MODELS[0].configuration.rectangles,
             "models": [
                 {
-                    "name": model.name, "looks": list(model.configuration.looks),
+                    "name": model.name, "features": list(model.configuration.features),
                     "reflections": model.configuration.reflections,
                 }
                 for model in WALKS_MODELS

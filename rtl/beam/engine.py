@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration, Facts, Options
@@ -16,7 +18,10 @@ from raycaster.screens import BEAM_SCREENS, Screen
 class Beam(Engine):
     """One lane per pixel of a clock, without a line buffer."""
 
-    renderer = staticmethod(beam_renderer)
+    @property
+    def renderer(self) -> Callable[..., Any]:
+        """`beam_renderer`."""
+        return beam_renderer
 
     def scales(self, screen: Screen) -> tuple[int, ...]:
         """Return the scales for which the monitor has pixels; first the one with a ray per pixel."""

@@ -3,7 +3,7 @@
 
 from myhdl import Signal, always_comb, always_seq, block, instances
 
-from raycaster.configuration import LOOKS, Configuration
+from raycaster.configuration import FEATURES, Configuration
 from raycaster.hdl.signals import bit, tied, unsigned
 from raycaster.registers import register_map
 from raycaster.rtl.common.widths import CYCLE_BITS, RGB_BITS, WORD_BITS
@@ -24,7 +24,7 @@ def engine_word(config: Configuration) -> int:
         colour_bits=config.colour_bits,
         fixed=FIXED_CODES[config.fixed.scope] if config.fixed else 0,
         culling=int(config.culling),
-        **{look: int(getattr(config, look)) for look in LOOKS},
+        **{feature: int(getattr(config, feature)) for feature in FEATURES},
     )
 
 

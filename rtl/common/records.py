@@ -206,7 +206,7 @@ class RoomImage(Record):
     def __init__(self, config: Configuration, shift: int | None = None):
         flags = dict.fromkeys(("met_x", "met_y", "met_z", "back_x", "back_y", "back_z"), 1)
         shifts = dict.fromkeys(("shift_x", "shift_y", "shift_z"), Signed(shift or shift_bits(config)))
-        super().__init__(flags | shifts)
+        super().__init__({**flags, **shifts})
 
 
 class Fold(Record):

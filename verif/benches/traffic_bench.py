@@ -85,7 +85,7 @@ class Traffic:
             kind = rng.choice(("silence", "reads", "mixture", "gaps", "shadow", "scene"))
             if kind == "scene":
                 scene = random_scene(
-                    rng.randrange(1 << 16), configuration.rectangles, configuration.reflections, configuration.looks
+                    rng.randrange(1 << 16), configuration.rectangles, configuration.reflections, configuration.features
                 )
                 for name, fields in scene_fields(scene, configuration):
                     yield Request(registers[name].address, registers[name].pack(**fields))

@@ -29,7 +29,7 @@ from raycaster.runs.outcomes import add_keep_option, keep
 from raycaster.runs.tools import TIMEOUT
 from raycaster.verif.formal.lemmas import LEMMAS, Lemma, prove_lemma
 from raycaster.verif.formal.properties import PROPERTIES
-from raycaster.verif.formal.prover import Property, Result, inputs_of, prove, with_all_looks
+from raycaster.verif.formal.prover import Property, Result, inputs_of, prove, with_all_features
 
 PROOFS: list[Property | Lemma] = [*PROPERTIES, *LEMMAS]
 NAMES = list(dict.fromkeys(proof.name for proof in PROOFS))
@@ -55,7 +55,7 @@ def command_parser() -> CommandParser:
 
 def verilog(arguments: argparse.Namespace) -> str:
     """Digest the Verilog of the designs whose blocks have proofs."""
-    return verilog_digest(*with_all_looks())
+    return verilog_digest(*with_all_features())
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -136,10 +136,10 @@ def inputs_of(proof: Property, depth: int) -> str:
     return "\n".join([*map(uncommented, sources), *method])
 
 
-def with_all_looks() -> list[Configuration]:
-    """Return a design of each engine that has all looks, whose Verilog decides figures about all designs."""
+def with_all_features() -> list[Configuration]:
+    """Return a design of each engine that has all features, whose Verilog decides figures about all designs."""
     return [
-        configure(engine=name, allow_underrun=True, **dict.fromkeys(engine.facts.looks, True))
+        configure(engine=name, allow_underrun=True, **dict.fromkeys(engine.facts.features, True))
         for name, engine in ENGINES.items()
     ]
 

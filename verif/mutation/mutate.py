@@ -44,7 +44,7 @@ from raycaster.runs.tools import ToolError, run_yosys
 from raycaster.sim import ensure_tools
 from raycaster.sim.simulator import build_program
 from raycaster.verif import expected, recording, seeds
-from raycaster.verif.formal.prover import with_all_looks
+from raycaster.verif.formal.prover import with_all_features
 from raycaster.verif.recording import RECORD_VARIABLE, recording_name
 
 SOURCES = Path(__file__).parent
@@ -458,7 +458,7 @@ def command_parser() -> CommandParser:
 
 def verilog(arguments: argparse.Namespace) -> str:
     """Digest the Verilog that is mutated, in designs that have all its blocks."""
-    return verilog_digest(*with_all_looks())
+    return verilog_digest(*with_all_features())
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -27,7 +27,7 @@ async def soak(bench: HierarchyObject) -> None:
     job, configuration = harness.job, harness.configuration
     output = Path(job.output)
     await harness.reset()
-    failed, cases = [], catalogue(configuration.looks)
+    failed, cases = [], catalogue(configuration.features)
     with (output / "results.jsonl").open("w") as results:
         for seed in job.seeds:
             if job.stiff:
@@ -35,7 +35,7 @@ async def soak(bench: HierarchyObject) -> None:
             elif job.scene:
                 scene = load_scene(job.scene.split(os.pathsep)[seed], configuration.capacity)
             else:
-                scene = random_scene(seed, configuration.rectangles, configuration.reflections, configuration.looks)
+                scene = random_scene(seed, configuration.rectangles, configuration.reflections, configuration.features)
             result = {"seed": seed, "title": scene.title} | await show(harness, scene)
             if result["wrong_vs_golden"]:
                 failed.append(seed)

@@ -146,7 +146,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
     configuration, console = _configuration(arguments), Console()
-    output, seeds = arguments.build / "soak", range(len(catalogue(configuration.looks)))
+    output, seeds = arguments.build / "soak", range(len(catalogue(configuration.features)))
     if not arguments.stiff:
         options, first = {"seeds": arguments.seeds} | given_options(arguments), arguments.first
         if first is None:

@@ -29,7 +29,7 @@ from raycaster.sim.simulator import SIMULATORS, SimulationError, build_model, co
 from raycaster.verif.expected import check_cycles
 from raycaster.verif.seeds import seed
 
-EVERYTHING = dict.fromkeys(EXACT.facts.looks, True)
+EVERYTHING = dict.fromkeys(EXACT.facts.features, True)
 FULL_SCENE = ROOT / "raycaster" / "scenes" / "mirror_room.toml"
 DESIGNS = {
     **{engine: ("verilator", configure(engine=engine, screen="tiny"), FULL_SCENE) for engine in ENGINES},

@@ -21,7 +21,7 @@ from raycaster.design.options import CommandParser, add_configuration_options, a
 from raycaster.rtl.engines import ENGINES, engine_of
 from raycaster.screens import BEAM_SCREENS
 
-LOOKS = {"turn": True, "materials": True, "patterns": True}
+FEATURES = {"turn": True, "materials": True, "patterns": True}
 PAIRS = {"pixels": 2, "rows": 180, "scale": 6}
 """Options for two pixels per clock at 1920x1080."""
 
@@ -173,9 +173,9 @@ def test_every_row_is_set_up_in_its_blanking(place, rectangles, reflections):
     "options",
     [
         # A dozen rectangles with all features fit.
-        {"reflections": 4, **LOOKS},
-        {"screen": "tiny", "reflections": 2, **LOOKS},
-        {"screen": "play", "reflections": 1, **LOOKS},
+        {"reflections": 4, **FEATURES},
+        {"screen": "tiny", "reflections": 2, **FEATURES},
+        {"screen": "play", "reflections": 1, **FEATURES},
         # Two pixels per clock share one set-up, which must fit into half the blanking.
         {**PAIRS, "reflections": 1},
         {**PAIRS, "reflections": 1, "turn": True},

@@ -41,7 +41,7 @@ from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.seeds import seed
 
 MAP = register_map(CONFIG.rectangles)
-EVERYTHING = configure(engine="exact", screen="tiny", **dict.fromkeys(EXACT.facts.looks, True))
+EVERYTHING = configure(engine="exact", screen="tiny", **dict.fromkeys(EXACT.facts.features, True))
 """Design with all features that scenes may need."""
 
 LARGE = configure(engine="beam", screen="tiny", rectangles=32)
@@ -132,7 +132,7 @@ def test_any_scene_is_shown(library, config):
     """Random scenes, drawn one after another, become live whole and unchanged; new rectangles have default looks."""
     device = Device(library, Registers(config))
     for number in range(24):
-        scene = random_scene(100 * seed() + number, config.rectangles, 1, config.looks)
+        scene = random_scene(100 * seed() + number, config.rectangles, 1, config.features)
         device.set_background(scene.background)
         device.set_camera(scene.camera.position)
         if config.turn:

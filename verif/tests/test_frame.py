@@ -64,7 +64,7 @@ def test_full_size(bench: Bench, case):
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_hundred_scenes(bench: Bench, engine):
     """Random scenes with all looks; all clocks run all the time, as on an FPGA."""
-    first, looks = 100 * seed(), dict.fromkeys(ENGINES[engine].facts.looks, True)
+    first, looks = 100 * seed(), dict.fromkeys(ENGINES[engine].facts.features, True)
     design = configure(engine=engine, screen="tiny", reflections=2, **looks)
     bench("verif.soak.bench", design, "verilator", seeds=tuple(range(first, first + 100)), flags=UNGATED_FLAGS)
 
@@ -78,7 +78,7 @@ def test_every_scene(bench: Bench, engine):
     assert len(scenes) - len(PLAIN) >= (2 if engine == "seed" else 8)
     # The fewest units that meet the row budget compile fastest.
     size = {"units": 16} if engine == "seed" else {}
-    looks = dict.fromkeys(ENGINES[engine].facts.looks, True)
+    looks = dict.fromkeys(ENGINES[engine].facts.features, True)
     design = configure(engine=engine, screen="tiny", reflections=2, **looks, **size)
     bench("verif.soak.bench", design, "verilator", os.pathsep.join(map(str, scenes)), seeds=tuple(range(len(scenes))))
 

@@ -15,7 +15,7 @@ import pytest
 from conftest import ROOT
 from test_mistakes import MISTAKES, cases
 
-from raycaster.configuration import LOOKS
+from raycaster.configuration import FEATURES
 from raycaster.scene import Camera, Scene, SceneError, load_scene, packaged_scenes
 from raycaster.verif.seeds import seed
 from raycaster.web.site import scene_schema
@@ -138,10 +138,10 @@ def test_packaged_scenes_and_every_value_at_every_key(both):
         assert _short(result) == _short(expected), f"{text}\n{result}\n{expected}"
         kinds[result["error"] is None] += 1
         if result["scene"]:
-            needs |= {(look, result["scene"]["needs"][look]) for look in LOOKS}
+            needs |= {(look, result["scene"]["needs"][look]) for look in FEATURES}
     assert kinds[True] > 50
     assert kinds[False] > 500
-    assert len(needs) == 2 * len(LOOKS)
+    assert len(needs) == 2 * len(FEATURES)
 
 
 def test_other_texts(both):

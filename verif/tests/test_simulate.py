@@ -13,7 +13,7 @@ import pytest
 from conftest import FLOOR_SCENE, PATTERNED_SCENE, ROOT, SMALL_SCENE, TURNED_SCENE, called
 from PIL import Image
 
-from raycaster.configuration import LOOKS
+from raycaster.configuration import FEATURES
 from raycaster.design.decide import OPTIONS as DESIGN_OPTIONS
 from raycaster.design.decide import configure
 from raycaster.design.for_scene import design_for, left_out, packaged_for
@@ -87,7 +87,7 @@ def test_pictures_of_another_screen_or_engine_are_kept_apart():
         ("sim-seed-colour-bits-4-fix-all", ["seed"], {"colour_bits": 4, "fix": "all"}),
     ):
         assert output_directory(Path("build"), engines, options) == Path("build") / expected
-    alike = {"engine", "screen", "rows", "scale", "units", "pixels", "divider_bits", "culling", "bus", *LOOKS}
+    alike = {"engine", "screen", "rows", "scale", "units", "pixels", "divider_bits", "culling", "bus", *FEATURES}
     assert alike | {*PICTURED} == {*DESIGN_OPTIONS, "fix", "cells"}
 
 
@@ -156,7 +156,7 @@ def test_a_scene_chooses_what_it_needs(tmp_path):
         path = tmp_path / "mine.toml"
         path.write_text(text)
         config = design_for(path, options).configuration
-        return config.engine, config.looks
+        return config.engine, config.features
 
     assert chosen(FLOOR_SCENE) == ("seed", ())
     assert chosen(FLOOR_SCENE, engine="exact", turn="1") == ("exact", ("turn",))

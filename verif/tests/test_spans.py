@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from raycaster.configuration import LOOKS
+from raycaster.configuration import FEATURES
 from raycaster.golden.picture import describe_difference
 from raycaster.golden.spans import SpanModel, first_change, picture_of, row_slope
 from raycaster.scene import load_scene, packaged_scenes
@@ -24,7 +24,7 @@ TINY = SCREENS["tiny", 48]
 VGA = SCREENS["vga", 240]
 FULL_HD = BEAM_SCREENS["vga", 180].scaled(6)
 
-ALL = dict.fromkeys(LOOKS, True)
+ALL = dict.fromkeys(FEATURES, True)
 
 SCENES = {name: load_scene(path) for name, path in sorted(packaged_scenes().items())}
 
@@ -50,13 +50,13 @@ def test_packaged_scenes_on_the_whole_screen(name, reflections):
 
 def test_stiff_catalogue():
     """The catalogue's scenes strain arithmetic on the whole screen; here every fourth one, on the small one."""
-    for case in catalogue(LOOKS)[::4]:
+    for case in catalogue(FEATURES)[::4]:
         check(scene_frame(case.scene), TINY)
 
 
 @pytest.mark.slow
 def test_stiff_catalogue_on_the_whole_screen():
-    for case in catalogue(LOOKS):
+    for case in catalogue(FEATURES):
         check(scene_frame(case.scene), VGA)
 
 

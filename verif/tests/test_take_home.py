@@ -41,7 +41,7 @@ CONFIGURATIONS = [
     configure(units=2, rectangles=3, reflections=2, materials=True, patterns=True, allow_underrun=True),
     configure(engine="exact", screen="tiny", reflections=2, turn=True, materials=True, patterns=True),
     configure(engine="exact", screen="tiny", rectangles=2, light=True),
-    configure(engine="exact", screen="tiny", reflections=2, rectangles=2, **dict.fromkeys(EXACT.facts.looks, True)),
+    configure(engine="exact", screen="tiny", reflections=2, rectangles=2, **dict.fromkeys(EXACT.facts.features, True)),
     configure(engine="beam", rows=180),
     configure(engine="beam", screen="tiny", reflections=2, rectangles=3, scale=1),
     configure(engine="beam", reflections=0, rectangles=1, colour_bits=4),

@@ -12,7 +12,7 @@ import pytest
 from conftest import BUILD
 from wasmtime import Instance, Module, Store
 
-from raycaster.configuration import LOOKS, Configuration
+from raycaster.configuration import FEATURES, Configuration
 from raycaster.design.decide import configure
 from raycaster.errors import UserError
 from raycaster.golden.engines import model_of
@@ -34,7 +34,7 @@ WORDS = 1024
 
 QUOTIENTS = [(bits, rounding) for bits in (0, 3, 8) for rounding in ("truncate", "nearest")]
 ENGINES = [
-    *({"engine": engine.facts.name, **dict.fromkeys(engine.facts.looks, True)} for engine in (EXACT, BEAM)),
+    *({"engine": engine.facts.name, **dict.fromkeys(engine.facts.features, True)} for engine in (EXACT, BEAM)),
     *(
         {"engine": "seed", "fraction_bits": bits, "rounding": rounding, "materials": True, "patterns": True}
         for bits, rounding in QUOTIENTS
@@ -109,8 +109,8 @@ def random_words(rng: np.random.Generator, config: Configuration) -> list[tuple[
 
     Unlike in scene files, entries may be disabled or have no plane, mirrors may be above 4, and vectors may be any.
     """
-    everything = design(config.rectangles, engine="exact", **dict.fromkeys(LOOKS, True))
-    scene = random_scene(int(rng.integers(1 << 32)), config.rectangles, 2, LOOKS)
+    everything = design(config.rectangles, engine="exact", **dict.fromkeys(FEATURES, True))
+    scene = random_scene(int(rng.integers(1 << 32)), config.rectangles, 2, FEATURES)
     *words, start = scene_words(scene, everything)
     bits = {register.address: register.implemented for register in register_map(config.rectangles).values()}
     wrong = np.where(rng.random(len(words)) < 0.05, 1 << rng.integers(32, size=len(words)), 0).tolist()
@@ -141,7 +141,7 @@ def assert_drawn(
 @of_each_engine
 def test_stiff_catalogue(golden, options):
     config = design(**options)
-    cases = catalogue(config.looks)
+    cases = catalogue(config.features)
     assert len(cases) > 80
     for case in cases:
         for screen in (WIDE, TALL):
@@ -154,7 +154,7 @@ def test_random_worlds(golden, options):
     colourful = 0
     for number in range(WORLDS):
         # Some looks are left out; the design then ignores their fields in the words.
-        looks = {name: has and rng.random() < 0.7 for name, has in options.items() if name in LOOKS}
+        looks = {name: has and rng.random() < 0.7 for name, has in options.items() if name in FEATURES}
         rectangles, colour_bits = int(rng.integers(1, 33)), int(rng.integers(1, 9))
         config = design(rectangles=rectangles, colour_bits=colour_bits, **{**options, **looks})
         drawn = assert_drawn(golden, config, random_words(rng, config), f"world {number}")

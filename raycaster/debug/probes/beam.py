@@ -17,7 +17,7 @@ from raycaster.debug.probes.units import indexed, monitor_probes, rect_probe, sc
 from raycaster.debug.waves import Samples, signed
 from raycaster.rtl.beam import latencies as beam
 from raycaster.rtl.common import records
-from raycaster.rtl.common.widths import factor_bits, index_bits
+from raycaster.rtl.common.widths import factor_bits
 
 RENDERER = f"{DUT}.beam_renderer_i"
 CASTER = f"{RENDERER}.beam_caster_i"
@@ -248,7 +248,7 @@ class BeamProbes(Description):
         """Probes in the order in which values depend on each other."""
         config = self.config
         facet, walk = records.Facet(config), records.Walk(config)
-        sight = (records.Sight if config.patterns else records.Winner)(index_bits(config))
+        sight = (records.Sight if config.patterns else records.Winner)(config)
         last, passes = beam.rounds(config) - 1, len(self.starts)
         start, lead = fields(SETUP, "start", walk.layout, walk), -beam.fold_lead(config)
         moving = AXES if config.turn else "y"

@@ -210,8 +210,8 @@ const tabs = {
           scene = next;
           next = null;
           const name = RayCaster.walk.models.find(
-            ({ looks, reflections }) => reflections >= scene.reflections &&
-              Object.entries(scene.needs).every(([look, isNeeded]) => !isNeeded || looks.includes(look)),
+            ({ features, reflections }) => reflections >= scene.reflections &&
+              Object.entries(scene.needs).every(([name, isNeeded]) => !isNeeded || features.includes(name)),
           ).name;
           machine = await Machine.instead(machine, name);
           await machine.call("load", scene);

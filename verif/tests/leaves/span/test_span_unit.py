@@ -11,7 +11,7 @@ from conftest import plant
 from span_vectors import Frame, any_frame, frame_bench, frame_inputs, scene_frame, span_config
 from vectors import config_id
 
-from raycaster.configuration import LOOKS, Configuration
+from raycaster.configuration import FEATURES, Configuration
 from raycaster.golden.picture import describe_difference
 from raycaster.golden.spans import Row, picture_of
 from raycaster.rtl.common.interfaces import Run
@@ -110,7 +110,7 @@ def test_span_unit(config, leaf_of, random):
 @pytest.mark.parametrize("name", SCENES)
 def test_packaged_scenes(name, leaf_of):
     scene = SCENES[name]
-    looks = {look: True for look in LOOKS if scene.lacks({*LOOKS} - {look})}
+    looks = {look: True for look in FEATURES if scene.lacks({*FEATURES} - {look})}
     config = span_config(screen="tiny", rectangles=max(12, len(scene.rect)), reflections=scene.reflections, **looks)
     leaf = unit_bench(leaf_of, config)
     leaf.screen = config.screen_geometry
