@@ -67,6 +67,7 @@ def cell_walker(
     number = unsigned(PLACE_BITS + 1)
     limit = unsigned(edge_bits)
     whole_limit, offset, eye_w, to_plane, factor_1, factor_2 = (signed(factor_bits) for _ in range(6))
+    difference = signed(factor_bits + 1)
     axis_u, axis_v, axis_w, axis_1 = (unsigned(AXIS_BITS) for _ in range(4))
     back_w, back_1 = bit(), bit()
     above_left, above_right = signed(value_bits), signed(value_bits)
@@ -110,9 +111,14 @@ def cell_walker(
         whole_limit.next = limit
         to_plane.next = grid.distance
 
+    # An extra bit, as the present cell and the grid may belong to two surfaces while nothing is asked.
     @always_comb
     def measure():
-        offset.next = whole_limit - eye_w
+        difference.next = whole_limit - eye_w
+
+    @always_comb
+    def keep_offset():
+        offset.next = difference[factor_bits:].signed()
 
     # While the cell is being found, the second line is e itself.
     @always_comb

@@ -108,7 +108,7 @@ def test_span_unit(config, leaf_of, random):
     check_frames(leaf, [any_frame(random, config) for _ in range(QUICK if leaf.few else 8)])
 
 
-WIDEST = span_config(rows=180, scale=6, rectangles=12, reflections=4, **dict.fromkeys(LOOKS, True))
+WIDEST = span_config(rows=180, scale=6, rectangles=12, reflections=4, **dict.fromkeys(FEATURES, True))
 
 
 def test_full_hd(leaf_of, random):

@@ -26,6 +26,12 @@ def any_surface(random):
         axis, eye = int(random.integers(3)), tuple(random.integers(-100, 600, 3).tolist())
         distance, back = int(random.choice([1, 50, 200, int(random.integers(1, 900))])), bool(random.integers(2))
         backs = tuple(bool(one) for one in random.integers(2, size=3))
+        if random.random() < 0.5:
+            # Points at whole coordinates, some of them at edges of cells.
+            size = int(random.choice([1, 2, 8]))
+            slope = tuple(Line(int(random.integers(-40, 40)), int(random.integers(-3, 4))) for _ in range(3))
+            slope = (*slope[:axis], Line(-size if back else size, 0), *slope[axis + 1 :])
+            distance, eye = size * int(random.choice([1, 2, 8])), tuple(one // 8 * 8 for one in eye)
         ahead = folded(slope, axis, back)
         there = [
             column
@@ -42,7 +48,7 @@ def any_surface(random):
             return slope, axis, distance, back, ahead, eye, backs, there[0], there[-1] + 1
 
 
-@by(count=[40])
+@by(count=[240])
 def test_surface_cells(count, leaf_of, random):
     """The cell of each column, in as many cycles as the model says; several levels are apart."""
     config = span_config(screen="tiny", rectangles=4, reflections=1, turn=True, patterns=True)
