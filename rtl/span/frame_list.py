@@ -87,10 +87,9 @@ def frame_list(
 
         @always_comb
         def connect():
-            offered.next = valid[0]
+            offered.next = valid != 0
             head.word.next = runs
-            ready.next = 0
-            ready.next[0] = take
+            ready.next = take
 
     else:
         queued = [ListEntry(columns, pixel_bits).cut(runs, i) for i in range(units)]

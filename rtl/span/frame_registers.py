@@ -34,7 +34,7 @@ def frame_registers(clk, reset, bus, events, readback, rectangles: int):
     cycles, least = unsigned(WORD_BITS), Signal(intbv(none)[WORD_BITS:])
     drawn, again = unsigned(count_bits), unsigned(count_bits)
     late, list_full, clears = bit(), bit(), bit()
-    ones = unsigned(WORD_BITS)
+    ones, word = unsigned(WORD_BITS), unsigned(WORD_BITS)
 
     @always_comb
     def decode():
@@ -73,17 +73,21 @@ def frame_registers(clk, reset, bus, events, readback, rectangles: int):
             list_full.next = True
 
     @always_comb
-    def read():
-        readback.next = 0
+    def choose():
+        word.next = 0
         if bus.address == cycles_address:
-            readback.next = cycles
+            word.next = cycles
         elif bus.address == left_address:
-            readback.next = least
+            word.next = least
         elif bus.address == counts_address:
-            readback.next[count_bits:] = drawn
-            readback.next[again_low + count_bits : again_low] = again
+            word.next[count_bits:] = drawn
+            word.next[again_low + count_bits : again_low] = again
         elif bus.address == status_address:
-            readback.next[late_bit] = late
-            readback.next[full_bit] = list_full
+            word.next[late_bit] = late
+            word.next[full_bit] = list_full
+
+    @always_comb
+    def read():
+        readback.next = word
 
     return instances()

@@ -31,7 +31,7 @@ def row_dealer(clk, reset, new_frame, room, done, first_row, next_row, start, ro
     settles, deals = bit(), bit()
     left = unsigned(bits_for(rows + 1))
     turn = unsigned(bits_for(units))
-    busy, idle = unsigned(units), unsigned(units)
+    busy, idle, starts = (unsigned(units) for _ in range(3))
 
     @always(clk.posedge)
     def prepare():
@@ -47,11 +47,15 @@ def row_dealer(clk, reset, new_frame, room, done, first_row, next_row, start, ro
         deals.next = (left != 0) and idle[turn]
 
     @always_comb
+    def choose():
+        starts.next = 0
+        if deals:
+            starts.next[turn] = True
+
+    @always_comb
     def start_row():
         next_row.next = deals
-        start.next = 0
-        if deals:
-            start.next[turn] = True
+        start.next = starts
 
     @always(clk.posedge)
     def count():
@@ -72,6 +76,6 @@ def row_dealer(clk, reset, new_frame, room, done, first_row, next_row, start, ro
         if reset:
             busy.next = 0
         else:
-            busy.next = (busy & ~done) | start
+            busy.next = (busy & ~done) | starts
 
     return instances()

@@ -8,7 +8,7 @@ from raycaster.hdl.signals import bit, bits_for
 from raycaster.rtl.span.lists import ListEntry, entry_bits
 from raycaster.rtl.span.row_collector import row_collector
 
-COLUMNS, ROWS, ENTRIES = 6, 3, 8
+COLUMNS, ROWS, ENTRIES = 6, 3, 10
 
 
 @by(units=[1, 2, 3], pause=[0.0, 0.5])
@@ -24,7 +24,7 @@ def test_row_collector(units, pause, leaf_of, random):
     for _ in range(3000):
         reset = int(leaf.cycle > 1 and random.random() < 0.005)
         new_frame = int(leaf.cycle == 1 or (not reset and model.rows_left == 0 and random.random() < 0.3))
-        first = int(random.choice([0, ENTRIES]))
+        first = int(random.choice([0, ENTRIES, random.integers(ENTRIES)]))
         head = runs[0] if runs and random.random() >= pause else None
         full = model.full(head)
         leaf.case({"reset": reset or int(full), "new_frame": new_frame, "first": first, "offered": head is not None})

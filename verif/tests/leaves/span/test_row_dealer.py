@@ -8,13 +8,13 @@ from raycaster.hdl.signals import unsigned
 from raycaster.rtl.span.row_dealer import row_dealer
 
 
-@by(rows=[1, 7], units=[1, 2, 3, 5])
+@by(rows=[1, 13], units=[1, 2, 3, 5])
 def test_row_dealer(rows, units, leaf_of, random):
     ports = {"room": units, "done": units, "start": lambda: unsigned(units)}
     leaf, model = leaf_of(row_dealer, rows=rows, units=units, **ports), Dealer(rows, units)
     leaf.case({"reset": 1})
     finished = at_once = 0
-    for _ in range(2000):
+    for _ in range(3000):
         reset = int(random.random() < 0.01)
         idle = model.row == rows or not (model.dealing or model.settles or model.first_row)
         new_frame = int(idle and not model.busy and random.random() < 0.3)

@@ -43,7 +43,9 @@ def test_row_place(pixels, doubling, clocks, leaf_of, random):
         if playing and scan["next_column"]:
             place, taken = next(played)
         leaf.case({"reset": reset, **named("scan", scan), "first": first, "view_run": view_run, "taken": taken})
-        leaf.expect({"playing": playing, "restart": restarts.pop(cycle, 0)})
+        restart = restarts.pop(cycle, 0)
+        leaf.expect({"playing": playing, "restart": restart})
+        leaf.expect({"place": row % (1 << BITS)}, when=restart and not (coming or leaving))
         leaf.expect({"place": place % (1 << BITS)}, when=taken)
         beam.clock(bool(reset))
         # Both inputs change in the cycle after StartScreen.
