@@ -12,7 +12,7 @@ from raycaster.rtl.beam.beam_lane import beam_lane
 from raycaster.rtl.beam.lane_start import lane_start
 from raycaster.rtl.beam.line_starter import line_starter
 from raycaster.rtl.beam.row_register import row_register
-from raycaster.rtl.common.interfaces import Direction
+from raycaster.rtl.common.interfaces import Vector
 from raycaster.rtl.common.records import Facet, Look, Pixel, Walk, growth_of
 from raycaster.rtl.common.widths import exact_slope_bits
 from raycaster.rtl.engine.rect_setup import rect_setup
@@ -84,7 +84,7 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
     facet_words = [facet.word for facet in facets]
     growth_words = [[unsigned(bits) for bits in new_growth.layout.values()] for _ in facets]
     all_facets = side_by_side(facet_words)
-    aims = [Direction(exact_slope_bits(config) + 1) for _ in lanes]
+    aims = [Vector(exact_slope_bits(config) + 1) for _ in lanes]
     aim = aims[0]
 
     if config.turn:

@@ -46,7 +46,7 @@ def beam_lane(
             start_line then loads all of them.
         start: `Walk`; the start of the rectangle that load names, for the first column of this lane. 0 if the camera
             turns.
-        aim: `Direction`; D of the first column of this lane or, if the camera turns, the change of D per step.
+        aim: `Vector`; D of the first column of this lane or, if the camera turns, the change of D per step.
         facets: `Facet` of each rectangle, side by side, the first in the lowest bits.
         growths: the change per step of each rectangle's `Walk`, side by side, the first in the lowest bits.
         camera: `Camera` of the live scene.

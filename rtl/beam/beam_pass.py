@@ -40,7 +40,7 @@ def beam_pass(
         step_bounds: strobe; step one cycle later.
         step_slope: strobe; step two cycles later.
         start: `Walk`; the start of the rectangle that load names.
-        aim: `Direction`; as in slope_walker.
+        aim: `Vector`; as in slope_walker.
         facets: `Facet` of each rectangle, side by side, the first in the lowest bits.
         growths: the change per step of each rectangle's `Walk`, side by side, the first in the lowest bits.
         fold: `Fold` of the ray, `fold_lead` cycles before its step; read only if reflected.

@@ -25,7 +25,7 @@ def hit_cells(clk, image, nearest, winner, slope, camera, sight, config: Configu
         image: `RoomImage` of the ray; read a cycle after nearest.
         nearest: `Candidate`; the nearest hit.
         winner: `Winner`; the rectangle of nearest, in the same cycle.
-        slope: `Direction`; D, read `CELL_SLOPE_AT` cycles after nearest.
+        slope: `Vector`; D, read `CELL_SLOPE_AT` cycles after nearest.
         camera: `Camera` of the live scene.
         sight: `Sight`; output, winner with odd_u and odd_v, `CELL_LATENCY` cycles after it.
         config: the design.

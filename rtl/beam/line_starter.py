@@ -24,7 +24,7 @@ def line_starter(clk, reset, start_line, camera, row_slope, loaded, aim, start_s
         row_slope: signed, `factor_bits` bits; rows above the horizon. Constant from the third cycle after start_line
             on.
         loaded: strobe; rect_setup's last load of a sweep.
-        aim: `Direction`; output, D = view distance * forward - centre column * right + row_slope * up of the line's
+        aim: `Vector`; output, D = view distance * forward - centre column * right + row_slope * up of the line's
             first ray and, from the second cycle after enter, right. With two pixels per clock, aim advances with each
             bit of enter: to D of the second ray, and then to twice right.
         start_sweep: strobe; output, rect_setup starts.

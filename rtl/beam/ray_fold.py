@@ -25,7 +25,7 @@ def ray_fold(clk, before, last, slope, fold):
         clk: the clock.
         before: `RoomImage` of the fold at the previous mirror, all 0 if there was none.
         last: `Reflector`; the mirror, read in the same cycle as before.
-        slope: `Direction`; D, read a cycle after before and last.
+        slope: `Vector`; D, read a cycle after before and last.
         fold: `Fold`; output, `FOLD_LATENCY` cycles after before and last.
     """
     part_bits, product_bits = len(fold.p_x), len(fold.border_x)

@@ -4,13 +4,13 @@
 from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.interfaces import Direction
+from raycaster.rtl.common.interfaces import Vector
 from raycaster.rtl.common.widths import exact_slope_bits
 
 
-def ray_slope(aim: Direction, config: Configuration) -> Direction:
+def ray_slope(aim: Vector, config: Configuration) -> Vector:
     """Return the slope that a `slope_walker` drives; if the camera does not turn, only y changes with the column."""
-    slope = Direction(exact_slope_bits(config) + 1)
+    slope = Vector(exact_slope_bits(config) + 1)
     if not config.turn:
         slope.x, slope.z = aim.x, aim.z
     return slope
@@ -26,9 +26,9 @@ def slope_walker(clk, start_line, step, aim, slope, config: Configuration):
         clk: the clock.
         start_line: strobe; begins a line.
         step: strobe; advances to the next column.
-        aim: `Direction`; if the camera turns, the change of D per step, and D is 0 after start_line. Otherwise D of the
+        aim: `Vector`; if the camera turns, the change of D per step, and D is 0 after start_line. Otherwise D of the
             first column, and only D[y] changes.
-        slope: `Direction`; output, D. Valid from the cycle after start_line, for the first column, and from the cycle
+        slope: `Vector`; output, D. Valid from the cycle after start_line, for the first column, and from the cycle
             after each step, for the next one. If the camera does not turn, x and z are those of aim.
         config: the design.
     """

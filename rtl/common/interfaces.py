@@ -159,8 +159,8 @@ class Slope(Interface):
         self.dx, self.dy, self.dz = (unsigned(bits) for _ in range(3))
 
 
-class Direction(Group):
-    """A slope, or an increment of one, in two's complement.
+class Vector(Group):
+    """A slope, an increment of one, or a mirrored eye in whole world units, in two's complement.
 
     Attributes:
         x: component along x.
@@ -249,19 +249,6 @@ class GroupFate(Group):
         self.any_towards, self.any_alive, self.any_in_question = bit(), bit(), bit()
         self.may_hit = unsigned(config.rectangles)
         super().__init__(**given)
-
-
-class Eye(Interface):
-    """The camera's position, mirrored in all mirrors so far, in two's complement and whole world units.
-
-    Attributes:
-        x: coordinate along x.
-        y: coordinate along y.
-        z: coordinate along z.
-    """
-
-    def __init__(self, bits: int):
-        self.x, self.y, self.z = (signed(bits) for _ in range(3))
 
 
 class SceneBus(Interface):

@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit, signed, tied, unsigned
-from raycaster.rtl.common.interfaces import Direction, Place, Rects
+from raycaster.rtl.common.interfaces import Place, Rects, Vector
 from raycaster.rtl.common.records import Facet, Walk, WideRect
 from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, wide_walk_bits
 from raycaster.rtl.cull.group_tester import group_tester
@@ -48,7 +48,7 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
     next_place = Place(config)
     first_column = unsigned(config.screen_geometry.columns.bit_length())
     column_slope, row_slope = signed(slope_bits), signed(slope_bits)
-    slope = Direction(
+    slope = Vector(
         slope_bits, x=tied(config.screen_geometry.view_distance, Signed(slope_bits)), y=column_slope, z=row_slope
     )
     swept, all_tested, predicted = bit(), bit(), bit()

@@ -36,7 +36,7 @@ def rect_setup(
         start_line: strobe; starts a sweep through all rectangles.
         rects: `Rects`; index and fetch are outputs, and rect, with or without a look, comes two cycles after fetch.
         camera: `Camera`; only its position is read.
-        slope: `Direction` of the ray through the first column; constant from the third cycle after start_line on.
+        slope: `Vector` of the ray through the first column; constant from the third cycle after start_line on.
         load: unsigned output, `config.rectangles` bits, one per rectangle; high for the cycle in which the other
             outputs belong to that rectangle.
         facet: output `Facet` of the rectangle; valid with its bit of load.

@@ -25,7 +25,7 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
     Args:
         clk: the clock.
         steps: `Steps`; only load_divider and store_quotient are read.
-        eye: `Eye`, E.
+        eye: `Vector`, E.
         signs: `Signs` of the slope D.
         slope: `Slope`, the magnitudes of D.
         found_surface: `Surface`, with patterns, of the rectangle that was hit.

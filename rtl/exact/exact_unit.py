@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, unconnected, unsigned
-from raycaster.rtl.common.interfaces import Eye, Slope
+from raycaster.rtl.common.interfaces import Slope, Vector
 from raycaster.rtl.common.records import Colour, Mirror, Signs, Surface
 from raycaster.rtl.common.widths import RGB_BITS, exact_slope_bits, eye_bits, light_slope_bits
 from raycaster.rtl.engine.colour_combiner import colour_combiner
@@ -46,7 +46,7 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
         config: the design.
     """
     initial_signs, signs = Signs(), Signs()
-    slope, eye = Slope(exact_slope_bits(config)), Eye(eye_bits(config))
+    slope, eye = Slope(exact_slope_bits(config)), Vector(eye_bits(config))
     mirror, found_surface = Mirror(config), Surface(config)
     at_mirror = bit()
     found_at_mirror = bit() if mirror.has("met_x") else unconnected(1)
@@ -61,7 +61,7 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
     if config.light:
         light_bits = light_slope_bits(config)
         shadow_signs, shadow_slope = Signs(), Slope(light_bits)
-        ray = Eye(eye_bits(config)), Signs(), Slope(light_bits), Mirror(config)
+        ray = Vector(eye_bits(config)), Signs(), Slope(light_bits), Mirror(config)
         tested_denominator, shown = unsigned(light_bits), unsigned(RGB_BITS)
     tested_eye, tested_signs, tested_slope, tested_mirror = ray
 

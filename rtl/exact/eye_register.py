@@ -28,7 +28,7 @@ def eye_register(
             and so from its image. Read with steps.store_ray.
         found_at_mirror: flag, read if the `Mirror` has corners; the hit is at the point where the ray left its last
             mirror. Read with steps.store_ray.
-        eye: output `Eye`; valid from the cycle after steps.screen_to_ray or steps.store_ray.
+        eye: output `Vector`; valid from the cycle after steps.screen_to_ray or steps.store_ray.
         signs: output `Signs` of the current ray; the magnitudes of its slope do not change.
         mirror: output `Mirror` that the ray left last, not active for the primary ray; valid from the cycle after
             steps.screen_to_ray or steps.store_ray.

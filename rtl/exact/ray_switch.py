@@ -16,13 +16,13 @@ def ray_switch(
     Args:
         from_light: flag; chooses the shadow ray.
         camera: `Camera` with a light; only the light's position is read.
-        eye: `Eye` of the unit's ray.
+        eye: `Vector` of the unit's ray.
         signs: `Signs` of that ray's slope.
         slope: `Slope` of that ray, the magnitudes.
         mirror: `Mirror` that the unit's ray left last.
         shadow_signs: `Signs` of the shadow ray's slope.
         shadow_slope: `Slope` of the shadow ray, the magnitudes; at least as wide as slope.
-        tested_eye: output `Eye`, as wide as eye.
+        tested_eye: output `Vector`, as wide as eye.
         tested_signs: output `Signs`.
         tested_slope: output `Slope`, as wide as shadow_slope.
         tested_mirror: output `Mirror`, laid out like mirror; not active for the shadow ray.

@@ -35,7 +35,7 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
         clk: the clock.
         steps: `Steps`; only find_intersection is read.
         rect: `Rect`; read with steps.find_intersection.
-        eye: `Eye`, E; read with steps.find_intersection.
+        eye: `Vector`, E; read with steps.find_intersection.
         signs: `Signs` of the slope; read with steps.find_intersection.
         slope: `Slope`, the magnitudes; read with steps.find_intersection.
         mirror: `Mirror` that the ray left last; read with steps.find_intersection, except distance, which is read a

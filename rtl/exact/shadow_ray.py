@@ -28,7 +28,7 @@ def shadow_ray(
         steps: `Steps`; only aim is read. All other inputs must be stable while it is not 0, and eye, signs, slope and
             camera also in the cycle before.
         camera: `Camera` with a light; only the light's position is read.
-        eye: `Eye`, E.
+        eye: `Vector`, E.
         signs: `Signs` of the slope D.
         slope: `Slope`, the magnitudes of D.
         found_surface: `Surface` of the rectangle that was hit; only axis and position are read.

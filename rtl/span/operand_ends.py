@@ -21,8 +21,8 @@ def operand_ends(
         from_light: flag, read with `config.light`; all three come from aim instead, on axis 3 those of e.
         left: unsigned, `column_bits` bits.
         right: unsigned, `column_bits` bits.
-        slope: `Direction` of `span_slope_bits` bits; the slope of column 0, constant while anything is computed.
-        step: `Direction` of `step_bits` bits; the slope's change from column to column, constant like slope. Only read
+        slope: `Vector` of `span_slope_bits` bits; the slope of column 0, constant while anything is computed.
+        step: `Vector` of `step_bits` bits; the slope's change from column to column, constant like slope. Only read
             with `config.turn`; otherwise it is (0, 1, 0).
         aim: `Aim` of the span whose ends the columns are; read with `config.light`, constant like slope.
         at_left: signed output, `operand_bits` bits; the component at the column left.

@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unconnected, unsigned
-from raycaster.rtl.common.interfaces import Direction, Rects, Run
+from raycaster.rtl.common.interfaces import Rects, Run, Vector
 from raycaster.rtl.common.widths import (
     RGB_BITS,
     column_bits,
@@ -42,7 +42,7 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
         clk: the clock.
         reset: synchronous, active high; ends the row.
         start: strobe; draws a row. Only after reset, and from the cycle of done on.
-        slope: `Direction` of `span_slope_bits` bits; the slope of column 0 of that row, read with start.
+        slope: `Vector` of `span_slope_bits` bits; the slope of column 0 of that row, read with start.
         rects: `Rects`; index and fetch are outputs. All others are constant from start to done.
         camera: `Camera`; constant from start to done. If it turns, only right of its basis is read.
         picture: `Picture`; reflections and background are read, constant from start to done.
@@ -53,7 +53,7 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
     """
     width, mirrors = column_bits(config), config.reflections > 0
 
-    first_slope, step, answer = Direction(span_slope_bits(config)), Direction(step_bits(config)), Answer(config)
+    first_slope, step, answer = Vector(span_slope_bits(config)), Vector(step_bits(config)), Answer(config)
     chain, winner, heir, swept_heir, entry, tested = Chain(config), *(Entry(config) for _ in range(5))
     ask, set_up_ask, sweep_ask = (bit() for _ in range(3))
     query, set_up_query, sweep_query = (Query(config) for _ in range(3))

@@ -21,7 +21,7 @@ from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.bus.avalon_host import avalon_host
 from raycaster.rtl.bus.buses import BRIDGES
-from raycaster.rtl.common.interfaces import Access, AvalonPort, Direction, Eye, Rects, Scan, SceneBus, Slope, Steps, Vga
+from raycaster.rtl.common.interfaces import Access, AvalonPort, Rects, Scan, SceneBus, Slope, Steps, Vector, Vga
 from raycaster.rtl.common.records import (
     Candidate,
     Facet,
@@ -93,7 +93,7 @@ class TesterAlone(Alone):
         """Elaborate the test."""
         distance, design = self._eye - 1, configure(engine="exact", reflections=self.reflections)
         yield rect_tester(
-            clk=bit(), steps=Steps(), rect=Rect(design, self.coordinate), eye=Eye(self._eye), signs=Signs(),
+            clk=bit(), steps=Steps(), rect=Rect(design, self.coordinate), eye=Vector(self._eye), signs=Signs(),
             slope=Slope(self.coordinate), mirror=Mirror(design, distance), hit=bit(), at_mirror=bit(),
             numerator=unsigned(distance), denominator=unsigned(self.coordinate),
         )  # fmt: skip
@@ -126,7 +126,7 @@ class FoldAlone(Alone):
         product, design = widths["WALK_BITS"], configure(engine="beam", rectangles=1)
         fold = Fold(design, widths["FOLD_BITS"], product, shift, distance)
         yield ray_fold(
-            bit(), before=RoomImage(design, shift), last=Reflector(distance), slope=Direction(self.slope + 1), fold=fold
+            bit(), before=RoomImage(design, shift), last=Reflector(distance), slope=Vector(self.slope + 1), fold=fold
         )  # fmt: skip
         for tester in (ray_tester, partial(fold_tester, fold=fold)):
             yield tester(

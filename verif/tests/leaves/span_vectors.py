@@ -18,7 +18,7 @@ from raycaster.golden.spans import Chain, Line, SpanModel
 from raycaster.golden.spans import row_slope as golden_slope
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.hdl.signals import bit, tied, unconnected, unsigned
-from raycaster.rtl.common.interfaces import Direction, Rects
+from raycaster.rtl.common.interfaces import Rects, Vector
 from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import column_bits, index_bits, level_bits, span_slope_bits, step_bits
 from raycaster.rtl.span.entry_table import entry_table
@@ -66,7 +66,7 @@ def frame_bench(
         done: output strobe.
         config: the design.
     """
-    rects, slope = Rects(config), Direction(span_slope_bits(config))
+    rects, slope = Rects(config), Vector(span_slope_bits(config))
     memory = [unsigned(len(stored.word)) for _ in range(1 << index_bits(config))]
     begun, begins, start = bit(), bit(), bit()
     camera_slope = row_slope(clk=clk, first_row=first_row, next_row=start, camera=camera, slope=slope, config=config)
@@ -140,8 +140,8 @@ def chain_bench(
         number: unsigned, `index_bits` bits; read with store.
         stored: `Rect`; read with store.
         usable: unsigned, a bit per rectangle.
-        slope: `Direction`.
-        step: `Direction`.
+        slope: `Vector`.
+        step: `Vector`.
         chain: `Chain`.
         begin_set_up: strobe.
         clear: strobe; forgets the entries for the sweep.
@@ -247,7 +247,7 @@ def chain_ports(config: Configuration) -> dict[str, Any]:
     width, entries = column_bits(config), ("given", "winner", "entry", "heir")
     return {
         "number": index_bits(config), "stored": lambda: Rect(config), "usable": config.rectangles,
-        "slope": lambda: Direction(span_slope_bits(config)), "step": lambda: Direction(step_bits(config)),
+        "slope": lambda: Vector(span_slope_bits(config)), "step": lambda: Vector(step_bits(config)),
         "chain": lambda: ChainRecord(config), "column": width, "count": count_bits(config), "swept_stop": width,
         **{name: lambda: Entry(config) for name in entries},
     }  # fmt: skip
@@ -400,8 +400,8 @@ def cells_bench(
     Args:
         clk: the clock.
         reset: synchronous, active high.
-        slope: `Direction`.
-        step_slope: `Direction`.
+        slope: `Vector`.
+        step_slope: `Vector`.
         paint: strobe.
         level: unsigned, `level_bits` bits.
         kind: unsigned, 2 bits.

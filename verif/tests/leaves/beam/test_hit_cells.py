@@ -12,7 +12,7 @@ from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.world import OTHER_AXES
 from raycaster.rtl.beam.hit_cells import hit_cells
 from raycaster.rtl.beam.latencies import CELL_LATENCY, CELL_SLOPE_AT
-from raycaster.rtl.common.interfaces import Direction
+from raycaster.rtl.common.interfaces import Vector
 from raycaster.rtl.common.records import Point, Sight
 from raycaster.rtl.common.widths import exact_slope_bits, steepest_slope
 
@@ -49,7 +49,7 @@ def to_edge(random: np.random.Generator, config: Configuration, axis: int, plane
     slow=["beam-tiny48-s2-u1-r12-m0", "beam-vga180"],
 )
 def test_hit_cells(config, leaf_of, random):
-    slopes = {"slope": lambda: Direction(exact_slope_bits(config) + 1)}
+    slopes = {"slope": lambda: Vector(exact_slope_bits(config) + 1)}
     leaf = leaf_of(hit_cells, config, **slopes, camera=Point, sight=lambda: Sight(config))
     leaf.stimulus, cycle = [{} for _ in range(leaf.some(4000))], 0
     for table, chosen, camera, ray, mirrors in beam_rays(random, config, leaf.some(1200)):

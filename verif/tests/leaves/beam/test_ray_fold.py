@@ -6,7 +6,7 @@ from vectors import by_axis, designs, named
 
 from raycaster.rtl.beam.latencies import FOLD_LATENCY
 from raycaster.rtl.beam.ray_fold import ray_fold
-from raycaster.rtl.common.interfaces import Direction
+from raycaster.rtl.common.interfaces import Vector
 from raycaster.rtl.common.records import Reflector, RoomImage
 from raycaster.rtl.common.widths import exact_slope_bits
 
@@ -22,7 +22,7 @@ from raycaster.rtl.common.widths import exact_slope_bits
     quick=["beam-tiny48-s2-u1-r12-m3-c8", "beam-vga180-s4-u1-r12-m1-c8-turn", "beam-vga240-s2-u1-r12-m4-c8-turn"],
 )
 def test_ray_fold(config, leaf_of, random):
-    inputs = {"before": lambda: RoomImage(config), "slope": lambda: Direction(exact_slope_bits(config) + 1)}
+    inputs = {"before": lambda: RoomImage(config), "slope": lambda: Vector(exact_slope_bits(config) + 1)}
     leaf = leaf_of(ray_fold, config, **inputs, last=Reflector)
     rays = [ray[2:] for ray in beam_rays(random, config, leaf.some(4000)) if ray[-1]]
     leaf.stimulus = [{} for _ in range(len(rays) + FOLD_LATENCY + 1)]

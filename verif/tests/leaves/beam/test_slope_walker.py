@@ -5,13 +5,13 @@ from beam_vectors import by_screen, row_slopes
 from vectors import by_axis
 
 from raycaster.rtl.beam.slope_walker import slope_walker
-from raycaster.rtl.common.interfaces import Direction
+from raycaster.rtl.common.interfaces import Vector
 from raycaster.rtl.common.widths import exact_slope_bits
 
 
 @by_screen
 def test_slope_walker(config, leaf_of, random):
-    leaf = leaf_of(slope_walker, config, slope=lambda: Direction(exact_slope_bits(config) + 1))
+    leaf = leaf_of(slope_walker, config, slope=lambda: Vector(exact_slope_bits(config) + 1))
     lane = config.screen_geometry.columns // config.pixels
     for line in range(100):
         # Short lines, to test many aims.

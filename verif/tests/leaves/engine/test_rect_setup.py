@@ -7,7 +7,7 @@ from vectors import any_place, by, by_axis, named
 
 from raycaster.configuration import Configuration
 from raycaster.golden.rays import primary_slopes
-from raycaster.rtl.common.interfaces import Direction
+from raycaster.rtl.common.interfaces import Vector
 from raycaster.rtl.common.records import Look, Point, growth_of
 from raycaster.rtl.common.widths import exact_slope_bits
 from raycaster.rtl.engine.rect_setup import SETUP_LATENCY, rect_setup
@@ -29,7 +29,7 @@ def test_rect_setup(config, leaf_of, random, in_adders=False):
     """Random lines, with each rectangle unusable in at least one; a reset ends the last line."""
     count = config.rectangles
     ports = {"camera": Point, "growth": lambda: growth_of(config), "load": count, "in_adders": in_adders}
-    leaf = leaf_of(rect_setup, config, slope=lambda: Direction(exact_slope_bits(config) + 1), **ports)
+    leaf = leaf_of(rect_setup, config, slope=lambda: Vector(exact_slope_bits(config) + 1), **ports)
     leaf.stimulus += [{"reset": 1}] * 2
     for line in range(12):
         table = random_looks(random, flat_tables(random, count))

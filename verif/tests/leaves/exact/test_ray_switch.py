@@ -3,7 +3,7 @@
 
 from vectors import by, exact_config
 
-from raycaster.rtl.common.interfaces import Eye, Slope
+from raycaster.rtl.common.interfaces import Slope, Vector
 from raycaster.rtl.common.records import Mirror, Signs
 from raycaster.rtl.common.widths import eye_bits, light_slope_bits
 from raycaster.rtl.exact.ray_switch import ray_switch
@@ -16,7 +16,7 @@ PARTS = [f"{record}_d{axis}" for record in ("signs", "slope") for axis in "xyz"]
 def test_ray_switch(reflections, leaf_of, random):
     config = exact_config(reflections=reflections, light=True)
     slopes = dict.fromkeys(("shadow_slope", "tested_slope"), lambda: Slope(light_slope_bits(config)))
-    tested = {"tested_eye": lambda: Eye(eye_bits(config)), "tested_mirror": lambda: Mirror(config)}
+    tested = {"tested_eye": lambda: Vector(eye_bits(config)), "tested_mirror": lambda: Mirror(config)}
     leaf = leaf_of(ray_switch, config, **slopes, **tested, shadow_signs=Signs, tested_signs=Signs)
     mirror = [name for name in leaf.given if name.startswith("mirror_")]
     for _ in range(200):

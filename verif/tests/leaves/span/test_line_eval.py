@@ -8,7 +8,7 @@ from span_vectors import any_slope, line_inputs, span_config
 from vectors import by_axis
 
 from raycaster.hdl.signals import Signed
-from raycaster.rtl.common.interfaces import Direction
+from raycaster.rtl.common.interfaces import Vector
 from raycaster.rtl.common.widths import column_bits, furthest, span_slope_bits, steepest_slope, step_bits
 from raycaster.rtl.span.line_eval import LATENCY, line_eval
 from raycaster.rtl.span.operand_ends import operand_ends
@@ -25,7 +25,7 @@ DESIGNS = [
 def test_line_eval(options, leaf_of, random):
     config = span_config(**options)
     columns, far = config.screen_geometry.columns, furthest(config)
-    directions = {"slope": lambda: Direction(span_slope_bits(config)), "step": lambda: Direction(step_bits(config))}
+    directions = {"slope": lambda: Vector(span_slope_bits(config)), "step": lambda: Vector(step_bits(config))}
     # The greatest slope from the light, which is multiplied by distances within the world, and its greatest change.
     limits = [511 * steepest_slope(config)] * 2 + [2 * far << step_bits(config) - 1]
     leaf = leaf_of(
@@ -95,7 +95,7 @@ def test_operand_ends(turn, leaf_of, random):
     config = span_config(turn=turn)
     columns = config.screen_geometry.columns
     bits = {"axis": 2, "left": column_bits(config), "right": column_bits(config)}
-    ports = {"slope": lambda: Direction(span_slope_bits(config)), "step": lambda: Direction(step_bits(config))}
+    ports = {"slope": lambda: Vector(span_slope_bits(config)), "step": lambda: Vector(step_bits(config))}
     ends = {"at_left": span_slope_bits(config), "at_right": span_slope_bits(config), "growth": step_bits(config)}
     leaf = leaf_of(operand_ends, config, **bits, **ports, **{name: Signed(width) for name, width in ends.items()})
     for _ in range(leaf.some(150)):

@@ -9,7 +9,7 @@ from vectors import basis_inputs, by_axis
 
 from raycaster.golden.rays import primary_slopes
 from raycaster.hdl.signals import Signed
-from raycaster.rtl.common.interfaces import Direction
+from raycaster.rtl.common.interfaces import Vector
 from raycaster.rtl.common.widths import span_slope_bits
 from raycaster.rtl.span.row_slope import row_slope
 from raycaster.rtl.span.slope_start import slope_start
@@ -22,7 +22,7 @@ DESIGNS = [{"screen": "tiny"}, {"screen": "tiny", "turn": True}, {"rows": 180, "
 @pytest.mark.parametrize("options", DESIGNS, ids=str)
 def test_row_slope(options, leaf_of, random):
     config = span_config(**options)
-    leaf, screen = leaf_of(row_slope, config, slope=lambda: Direction(span_slope_bits(config))), config.screen_geometry
+    leaf, screen = leaf_of(row_slope, config, slope=lambda: Vector(span_slope_bits(config))), config.screen_geometry
     for frame in range(2 if screen.rows > 100 else 6):
         basis = random_basis(random) if config.turn else UNTURNED
         if frame == 1 and config.turn:

@@ -9,7 +9,7 @@ from vectors import by, by_axis, named
 from raycaster.golden.spans import ANSWER, Cells, Chain, Drawing, Line, SpanModel, combined, folded
 from raycaster.golden.world import OTHER_AXES
 from raycaster.hdl.signals import bit
-from raycaster.rtl.common.interfaces import Direction
+from raycaster.rtl.common.interfaces import Vector
 from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import RGB_BITS, column_bits, index_bits, level_bits, span_slope_bits, step_bits
 from raycaster.rtl.span import records
@@ -54,8 +54,8 @@ def test_surface_cells(count, leaf_of, random):
     config = span_config(screen="tiny", rectangles=4, reflections=1, turn=True, patterns=True)
     width = column_bits(config)
     leaf = leaf_of(
-        cells_bench, config, slope=lambda: Direction(span_slope_bits(config)),
-        step_slope=lambda: Direction(step_bits(config)), rect=lambda: Rect(config),
+        cells_bench, config, slope=lambda: Vector(span_slope_bits(config)),
+        step_slope=lambda: Vector(step_bits(config)), rect=lambda: Rect(config),
         chain=lambda: records.Chain(config), winner=lambda: records.Entry(config), kind=2, level=level_bits(config),
         seen=level_bits(config), column=width, stop=width, place=width, next_column=width,
     )  # fmt: skip
