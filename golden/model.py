@@ -30,7 +30,7 @@ class Bounce:
     """
 
     origins: np.ndarray
-    """int64 (rays, 3): where rays start. Exact: the camera, mirrored in all mirrors so far. Seed: the camera, or the
+    """int64 (rays, 3): where rays start. Exact: the eye, mirrored in all mirrors so far. Seed: the eye, or the
     last hit point as stored; a ray that has ended stays there."""
 
     slopes: np.ndarray
@@ -38,7 +38,7 @@ class Bounce:
 
     met: np.ndarray
     """bool (rays, 3): axes on which a plane through the ray's start is not hit. Exact: the axes of the mirrors that it
-    met there, and all axes for a ray from the camera. Seed: all."""
+    met there, and all axes for a ray from the eye. Seed: all."""
 
     alive: np.ndarray
     """bool (rays,): the ray has hit something that mirrors at every bounce before."""
@@ -66,7 +66,7 @@ class Bounce:
     """int64 (rectangles, rays, 3): the point on the rectangle's plane. Seed: 0 on u and v where not valid."""
 
     depths: np.ndarray
-    """int64 (rectangles, rays): the distance along x. Exact: from the camera via all mirrors, with the sign of n. Seed:
+    """int64 (rectangles, rays): the distance along x. Exact: from the eye via all mirrors, with the sign of n. Seed:
     from the origin; don't care unless hit."""
 
     hits: np.ndarray
@@ -151,7 +151,7 @@ class Model(ABC):
     def trace(
         self,
         rectangles: Rectangles,
-        camera: ArrayLike,
+        eye: ArrayLike,
         background: Sequence[int],
         slopes: ArrayLike,
         reflections: int,
@@ -163,7 +163,7 @@ class Model(ABC):
 
         Args:
             rectangles: the table.
-            camera: (3,), or (rays, 3) for one per ray: where the rays start, in world units.
+            eye: (3,), or (rays, 3) for one per ray: where the rays start, in world units.
             background: red, green, blue.
             slopes: int (rays, 3); only their ratios count.
             reflections: 0 or more.
@@ -171,7 +171,7 @@ class Model(ABC):
             keep: also return every intermediate value: some 100 bytes per ray, rectangle and bounce.
         """
         slope = np.array(np.asarray(slopes).T, dtype=np.int64, order="C")
-        origin = np.array(np.broadcast_to(np.asarray(camera), slope.T.shape).T, dtype=np.int64, order="C")
+        origin = np.array(np.broadcast_to(np.asarray(eye), slope.T.shape).T, dtype=np.int64, order="C")
         met, shadings, seen = [], [], []
         for meeting in islice(self.meetings(rectangles, origin, slope, keep=keep), reflections + 1):
             colours = hit_colours(rectangles, background, *meeting[:3])
@@ -189,7 +189,7 @@ class Model(ABC):
         self,
         screen: Screen,
         rectangles: Rectangles,
-        camera: Sequence[int] | np.ndarray,
+        eye: Sequence[int] | np.ndarray,
         background: Sequence[int],
         reflections: int,
         *,
@@ -202,7 +202,7 @@ class Model(ABC):
             uint8 (rows, columns, 3).
         """
         slopes = primary_slopes(screen, basis)
-        traced = self.trace(rectangles, camera, background, slopes.reshape(-1, 3), reflections, light=light)
+        traced = self.trace(rectangles, eye, background, slopes.reshape(-1, 3), reflections, light=light)
         return traced.colours.reshape(slopes.shape)
 
     def render(self, scene: Scene, screen: Screen, reflections: int | None = None) -> np.ndarray:

@@ -170,7 +170,7 @@ def traced_scene(random: np.random.Generator, config: Configuration, slopes: np.
         reflections = config.reflections if rich else int(random.integers(config.reflections + 1))
         if rich and random.random() < 0.7:
             table = mirrored_on(random, table, camera, slopes[0], reflections + 1)
-        trace = tracer(config, camera=camera, background=background, slopes=slopes, reflections=reflections)
+        trace = tracer(config, eye=camera, background=background, slopes=slopes, reflections=reflections)
         golden = trace(table)
         if rich and not all(winner[0] >= 0 for winner in golden.winners):
             continue

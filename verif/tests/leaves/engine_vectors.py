@@ -219,10 +219,10 @@ def scene_in_view(random: np.random.Generator, config: Configuration, axis: int)
         reflections = int(random.integers(config.reflections + 1))
         trace = tracer(config, background=background, reflections=reflections)
         ray = slopes[random.integers(len(slopes))][None]
-        table = edged(random, config, trace(table, camera=camera, slopes=ray), table)
-        words = golden_words(config, trace(table, camera=camera, slopes=slopes).colours)
+        table = edged(random, config, trace(table, eye=camera, slopes=ray), table)
+        words = golden_words(config, trace(table, eye=camera, slopes=slopes).colours)
         beside = camera ^ (np.arange(3) == axis)
-        moved = golden_words(config, trace(table, camera=beside, slopes=slopes).colours)
+        moved = golden_words(config, trace(table, eye=beside, slopes=slopes).colours)
         if anything or (
             len(np.unique(words)) > 1 and axis in table.axes[table.visible] and not np.array_equal(moved, words)
         ):

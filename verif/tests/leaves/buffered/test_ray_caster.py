@@ -87,7 +87,7 @@ def test_ray_caster(config, leaf_of, random):
         groups = groups.reshape(len(groups), config.groups, config.units, 3)
         last = int(random.integers(1, len(groups))), int(random.integers(config.groups))
         camera, table, background, reflections, _ = traced_scene(random, config, groups[last])
-        trace = tracer(config, camera=camera, background=background, reflections=reflections)
+        trace = tracer(config, eye=camera, background=background, reflections=reflections)
         usable = usable_of(table)
         scene = scene_inputs(camera, table, background, reflections) | (basis_inputs(basis) if config.turn else {})
         rects = {index: sorted_rect(table, index, "rects_rect", config) for index in usable}

@@ -43,7 +43,7 @@ def without_one(random: np.random.Generator, config: Configuration, scene: tuple
     slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
     for index in random.permutation(np.flatnonzero(table.visible)):
         less = Rectangles(table.corners, table.colours, table.enabled & (np.arange(len(table)) != index))
-        trace = tracer(config, camera=camera, background=background, reflections=reflections)
+        trace = tracer(config, eye=camera, background=background, reflections=reflections)
         left = golden_words(config, trace(less, slopes=slopes).colours)
         if not np.array_equal(left, words):
             return camera, less, background, reflections, left

@@ -31,7 +31,7 @@ def test_scene_system(tmp_path, random):
         table = Rectangles(table.corners, table.colours, np.ones(config.rectangles, dtype=bool))
         holds = np.repeat(random.integers(1 << len(BUTTONS), size=frames // 3), 3)
         trace = tracer(config, background=background, slopes=slopes, reflections=config.reflections)
-        pictures = [trace(table, camera=position).colours for position in walk(camera, holds)]
+        pictures = [trace(table, eye=position).colours for position in walk(camera, holds)]
         # Most random scenes look the same from everywhere.
         if len({picture.tobytes() for picture in pictures}) > frames // 2:
             break
