@@ -22,8 +22,8 @@ WalkState = enum("IDLE", "ASK", "ANSWER", "DIVIDE")
 
 @block
 def cell_walker(
-    clk, reset, start, find, on_v, grid, known_cell, column, answer, divided, columns, ask, query, divide,
-    division, found_cell, next_column, rises, done, config: Configuration,
+    clk, reset, start, find, on_v, grid, known_cell, column, asks, answer, found_cell, next_column, rises, done,
+    config: Configuration,
 ):  # fmt: skip
     """Find the column in which the next cell of a surface's pattern begins, along u or v, and first the present cell.
 
@@ -43,13 +43,8 @@ def cell_walker(
         grid: `Grid` of the grid.
         known_cell: unsigned, `PLACE_BITS` bits; the present cell, read with start without find.
         column: unsigned, `column_bits` bits; the present column.
-        answer: `Answer`; read after each query.
-        divided: strobe; `first_change` is done.
-        columns: unsigned, `column_bits` bits; read with divided.
-        ask: output strobe; `line_eval` must answer the query.
-        query: output `Query`; valid with ask.
-        divide: output strobe; `first_change` must take the division.
-        division: output `Division`; valid with divide.
+        asks: output `Asks`.
+        answer: `Answer`.
         found_cell: unsigned output, `PLACE_BITS` bits; the present cell, valid with done.
         next_column: unsigned output, `column_bits` bits; the column in which the next cell begins, or grid.stop.
             Valid with done.
@@ -138,7 +133,7 @@ def cell_walker(
         last.next = (grid.stop - 1) % (1 << width)
         asked_number.next = second
 
-    asked = query.joined(
+    asked = asks.query.joined(
         from_light=none, left=column, right=last, strict=none, axis_1=axis_1, back_1=back_1, factor_1=factor_1,
         axis_2=grid.axis, back_2=grid.back, factor_2=factor_2, half_line=none, last=none, slot=none,
         number=asked_number,
@@ -146,8 +141,8 @@ def cell_walker(
 
     @always_comb
     def request():
-        ask.next = state == WalkState.ASK
-        query.word.next = asked
+        asks.ask.next = state == WalkState.ASK
+        asks.query.word.next = asked
 
     @always(clk.posedge)
     def keep_first():
@@ -182,16 +177,16 @@ def cell_walker(
             value.next = above_left
             growth.next = above_growth
 
-    crossed = division.joined(value=value, growth=growth)
+    crossed = asks.division.joined(value=value, growth=growth)
 
     @always_comb
     def start_division():
-        divide.next = crosses
-        division.word.next = crossed
+        asks.divide.next = crosses
+        asks.division.word.next = crossed
 
     @always_comb
     def see_quotient():
-        quotient.next = (columns - 1) % (1 << width)
+        quotient.next = (answer.columns - 1) % (1 << width)
 
     @always_comb
     def see_place():
@@ -202,13 +197,13 @@ def cell_walker(
 
     @always_comb
     def see_done():
-        done.next = (decides and not crosses) or ((state == WalkState.DIVIDE) and divided and not finding)
+        done.next = (decides and not crosses) or ((state == WalkState.DIVIDE) and answer.divided and not finding)
         found_cell.next = present
         rises.next = up
         next_column.next = grid.stop
         if state == WalkState.DIVIDE:
             rises.next = rose
-            next_column.next = (column + columns) % (1 << width)
+            next_column.next = (column + answer.columns) % (1 << width)
         elif up or down:
             next_column.next = column
 
@@ -225,7 +220,7 @@ def cell_walker(
             state.next = WalkState.IDLE
             if crosses:
                 state.next = WalkState.DIVIDE
-        elif (state == WalkState.DIVIDE) and divided:
+        elif (state == WalkState.DIVIDE) and answer.divided:
             state.next = WalkState.IDLE
             if finding:
                 state.next = WalkState.ASK
@@ -238,7 +233,7 @@ def cell_walker(
             second.next = False
         elif state == WalkState.ASK:
             second.next = True
-        elif (state == WalkState.DIVIDE) and divided:
+        elif (state == WalkState.DIVIDE) and answer.divided:
             second.next = False
             finding.next = False
             if finding:

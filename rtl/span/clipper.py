@@ -14,10 +14,7 @@ SLOTS = 2
 
 
 @block
-def clipper(
-    clk, reset, chain, opened, slot, met, answer, divided, columns, divide, division, free, append, entry, idle,
-    config: Configuration,
-):  # fmt: skip
+def clipper(clk, reset, chain, opened, slot, met, asks, answer, free, append, entry, idle, config: Configuration):
     """Find the columns of a chain in which all half-lines of a rectangle are not negative; append an entry if any.
 
     A line that is negative at both ends of the chain rejects the rectangle. A line whose sign changes costs a division,
@@ -31,12 +28,8 @@ def clipper(
         opened: strobe; the answers of a rectangle follow, the last one marked by answer.last.
         slot: flag; read with opened: the slot for that rectangle. The first one after reset is 0, and they take turns.
         met: `Entry`, whose start and stop are ignored; read with opened.
-        answer: `Answer`; only those with half_line are read.
-        divided: strobe; the end of the division.
-        columns: unsigned, `column_bits` bits; columns from the chain's start up to the change of sign, read with
-            divided.
-        divide: output strobe; start a division.
-        division: output `Division`; valid with divide.
+        asks: output `Asks`; only divide and division are driven.
+        answer: `Answer`.
         free: output flag; the slot is free.
         append: output strobe; the rectangle is met in some columns.
         entry: output `Entry`; valid with append.
@@ -57,7 +50,7 @@ def clipper(
     rises = bit()
     entries = [unsigned(len(met.word)) for _ in range(SLOTS)]
     in_turn = Entry(config)
-    lines = [unsigned(len(division.word)) for _ in range(SLOTS * numbers)]
+    kept = [unsigned(len(asks.division.word)) for _ in range(SLOTS * numbers)]
     line = Division(config)
 
     @always_comb
@@ -71,7 +64,7 @@ def clipper(
     @always(clk.posedge)
     def keep_line():
         if answer.valid and answer.half_line and change:
-            lines[place].next = answered
+            kept[place].next = answered
 
     @always(clk.posedge)
     def keep_entry():
@@ -110,12 +103,12 @@ def clipper(
 
     @always_comb
     def start_division():
-        line.word.next = lines[asked]
-        divide.next = crossing
+        line.word.next = kept[asked]
+        asks.divide.next = crossing
 
     @always_comb
     def show_division():
-        division.word.next = line.word
+        asks.division.word.next = line.word
 
     @always(clk.posedge)
     def advance():
@@ -123,7 +116,7 @@ def clipper(
             state.next = ClipState.LOOK
         elif crossing:
             state.next = ClipState.DIVIDE
-        elif divided:
+        elif answer.divided:
             state.next = ClipState.LOOK
 
     @always(clk.posedge)
@@ -160,14 +153,14 @@ def clipper(
 
     @always_comb
     def find_edge():
-        border.next = (chain.start + columns) % (1 << width)
+        border.next = (chain.start + answer.columns) % (1 << width)
 
     @always(clk.posedge)
     def clip():
         if over or (pending == 0):
             start.next = chain.start
             stop.next = chain.stop
-        elif divided and (state == ClipState.DIVIDE):
+        elif answer.divided and (state == ClipState.DIVIDE):
             if rises and (border > start):
                 start.next = border
             elif (not rises) and (border < stop):

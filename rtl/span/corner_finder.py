@@ -12,8 +12,7 @@ from raycaster.rtl.span.records import NUMBER_BITS
 
 @block
 def corner_finder(
-    clk, reset, start, chain, winner, column, stop, answer, ask, query, needed, corner, part_stop, done,
-    config: Configuration,
+    clk, reset, start, chain, winner, column, stop, asks, answer, needed, corner, part_stop, done, config: Configuration
 ):  # fmt: skip
     """Find the first columns of a span in which its rays all meet the winner in the last mirror's point, or all do not.
 
@@ -29,9 +28,8 @@ def corner_finder(
         winner: `Entry` that is seen in the span.
         column: unsigned, `column_bits` bits; the span's first column.
         stop: unsigned, `column_bits` bits; the column after the span's last.
-        answer: `Answer`; read after start.
-        ask: output strobe; `line_eval` must answer the query.
-        query: output `Query`; valid with ask.
+        asks: output `Asks`; only ask and query are driven.
+        answer: `Answer`.
         needed: output flag; the rays may meet both in one point, so the line decides. Combinational.
         corner: output flag; they do, in the columns from column up to stop. Valid from the cycle after start without
             needed, otherwise from the cycle after done, up to the next start.
@@ -59,7 +57,7 @@ def corner_finder(
         last.next = (stop - 1) % (1 << width)
         next_column.next = (column + 1) % (1 << width)
 
-    asked = query.joined(
+    asked = asks.query.joined(
         from_light=none, left=column, right=last, strict=none, axis_1=chain.axis, back_1=chain.back, factor_1=to_winner,
         axis_2=winner.axis, back_2=winner.back, factor_2=to_mirror, half_line=none, last=none, slot=none,
         number=no_number,
@@ -67,8 +65,8 @@ def corner_finder(
 
     @always_comb
     def request():
-        ask.next = start and needed
-        query.word.next = asked
+        asks.ask.next = start and needed
+        asks.query.word.next = asked
 
     @always(clk.posedge)
     def await_answer():

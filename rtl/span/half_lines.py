@@ -14,7 +14,7 @@ from raycaster.rtl.span.records import AHEAD, BEYOND, NUMBER_BITS, U_HIGH, U_LOW
 
 @block
 def half_lines(
-    clk, reset, start, chain, rects, from_light, answer, free, done, ask, query, slot, opened, entry, walked,
+    clk, reset, start, chain, rects, from_light, asks, answer, free, done, slot, opened, entry, walked,
     config: Configuration,
 ):  # fmt: skip
     """Ask for the half-lines of each rectangle in the table's order, except of those that the rays cannot meet.
@@ -44,11 +44,10 @@ def half_lines(
         chain: `Chain`; constant from start to done.
         rects: `Rects`; index and fetch are outputs. A rectangle is read up to the cycle of opened.
         from_light: flag, read with `config.light`; the chain's rays come from the light. Constant from start to done.
-        answer: `Answer`; only those without half_line are read: the slope's components at the ends of the chain.
+        asks: output `Asks`; only ask and query are driven.
+        answer: `Answer`.
         free: flag; the slot is free for the next rectangle.
         done: strobe; all lines are answered and used, so the walk is over.
-        ask: output strobe; `line_eval` must answer the query.
-        query: output `Query`; valid with ask.
         slot: output flag; the slot of the next rectangle, or of the one that is opened: they take turns.
         opened: output strobe; the lines of a rectangle follow.
         entry: output `Entry`, valid with opened; start and stop are 0.
@@ -276,7 +275,7 @@ def half_lines(
             bound.next = rect_1.v_low
 
     axes = [tied(axis, AXIS_BITS) for axis in range(3)]
-    lines = [
+    of_line = [
         by_axis(axis, *values, chosen, width=len(chosen))
         for axis, values, chosen in (
             (entry_1.axis, along_u(*axes), axis_u), (entry_1.axis, along_v(*axes), axis_v),
@@ -360,7 +359,7 @@ def half_lines(
     def see_last_column():
         right.next = (chain.stop - 1) % (1 << columns)
 
-    asked = query.joined(
+    asked = asks.query.joined(
         from_light=lit, left=chain.start, right=right, strict=strict, axis_1=axis_1, back_1=back_1, factor_1=factor_1,
         axis_2=axis_2, back_2=back_2, factor_2=factor_2, half_line=half_line, last=last, slot=slot_1,
         number=number_asked,
@@ -368,7 +367,7 @@ def half_lines(
 
     @always_comb
     def query_line():
-        ask.next = issuing or (seeing and asked_axis != 3)
-        query.word.next = asked
+        asks.ask.next = issuing or (seeing and asked_axis != 3)
+        asks.query.word.next = asked
 
     return instances()

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Records and groups of signals of the span engine."""
 
+from typing import Any
+
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.records import Interface, Record
-from raycaster.hdl.signals import Signed, bit, signed, unsigned
+from raycaster.hdl.signals import Signed, bit, signed, tied, unsigned
+from raycaster.rtl.common.interfaces import Group
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
     CELL_BITS,
@@ -156,8 +159,8 @@ class Query(Record):
         )
 
 
-class Answer(Interface):
-    """The values of a line at two columns, `LATENCY` cycles after its query.
+class Answer(Group):
+    """The values of a line at two columns, `LATENCY` cycles after its query, and the end of a division.
 
     Attributes:
         valid: a query's answer is here.
@@ -168,13 +171,17 @@ class Answer(Interface):
         left: f at the left column.
         right: f at the right column.
         growth: the change of f from column to column.
+        divided: strobe; a division ends.
+        columns: columns from the one in which its line has the given value to its change of sign; valid with divided.
     """
 
-    def __init__(self, config: Configuration):
+    def __init__(self, config: Configuration, **given: Any):
         self.valid, self.half_line, self.last, self.slot = bit(), bit(), bit(), bit()
         self.number = unsigned(NUMBER_BITS)
         self.left, self.right = signed(line_bits(config)), signed(line_bits(config))
         self.growth = signed(divisor_bits(config))
+        self.divided, self.columns = bit(), unsigned(column_bits(config))
+        super().__init__(**given)
 
 
 class Aim(Interface):
@@ -207,3 +214,22 @@ class Division(Record):
 
     def __init__(self, config: Configuration):
         super().__init__({"value": Signed(line_bits(config)), "growth": Signed(divisor_bits(config))})
+
+
+class Asks(Group):
+    """Requests to `line_eval` and `first_change`, for which several blocks take turns.
+
+    Attributes:
+        ask: strobe; evaluate the query of this cycle.
+        query: the line; valid with ask.
+        divide: strobe; find where a line's sign changes.
+        division: that line; valid with divide.
+    """
+
+    def __init__(self, config: Configuration, *, asks: bool = True, divides: bool = True):
+        """Make the requests of a block; without some of them, they are tied off."""
+        self.ask, self.query = bit(), Query(config)
+        self.divide, self.division = bit(), Division(config)
+        given: dict[str, Any] = {} if asks else {"ask": tied(0, 1), "query": Query(config).tie({})}
+        given |= {} if divides else {"divide": tied(0, 1), "division": Division(config).tie({})}
+        super().__init__(**given)

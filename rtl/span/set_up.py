@@ -12,9 +12,8 @@ from raycaster.rtl.span.records import Entry
 
 @block
 def set_up(
-    clk, reset, start, chain, from_light, rects, answer, divided, columns, ask, query, divide, division, append, entry,
-    count, done, config: Configuration,
-):  # fmt: skip
+    clk, reset, start, chain, from_light, rects, asks, answer, append, entry, count, done, config: Configuration
+):
     """Find all entries of a chain, in the order of the table: exactly the columns in which a ray meets the rectangle.
 
     Args:
@@ -24,13 +23,8 @@ def set_up(
         chain: `Chain`; constant from the cycle before start to done.
         from_light: flag, read with `config.light`; the chain's rays come from the light. Constant like chain.
         rects: `Rects`; index and fetch are outputs.
-        answer: `Answer` of `line_eval`.
-        divided: strobe; `first_change` is done.
-        columns: unsigned, `column_bits` bits; read with divided.
-        ask: output strobe; `line_eval` must answer the query.
-        query: output `Query`; valid with ask.
-        divide: output strobe; `first_change` must take the division.
-        division: output `Division`; valid with divide.
+        asks: output `Asks`.
+        answer: `Answer`.
         append: output strobe; another entry.
         entry: output `Entry`; valid with append.
         count: unsigned output, `count_bits` bits; the number of entries so far. From done to the next start, of all.
@@ -41,14 +35,12 @@ def set_up(
     met = Entry(config)
 
     walk = half_lines(
-        clk=clk, reset=reset, start=start, chain=chain, from_light=from_light, rects=rects, answer=answer,
-        free=free, done=done, ask=ask,
-        query=query, slot=slot, opened=opened, entry=met, walked=walked, config=config,
+        clk=clk, reset=reset, start=start, chain=chain, from_light=from_light, rects=rects, asks=asks, answer=answer,
+        free=free, done=done, slot=slot, opened=opened, entry=met, walked=walked, config=config,
     )  # fmt: skip
     clip = clipper(
-        clk=clk, reset=reset, chain=chain, opened=opened, slot=slot, met=met, answer=answer, divided=divided,
-        columns=columns, divide=divide, division=division, free=free, append=append, entry=entry, idle=idle,
-        config=config,
+        clk=clk, reset=reset, chain=chain, opened=opened, slot=slot, met=met, asks=asks, answer=answer, free=free,
+        append=append, entry=entry, idle=idle, config=config,
     )  # fmt: skip
 
     @always(clk.posedge)

@@ -22,8 +22,8 @@ ShadowState = enum("IDLE", "AIM", "SET_UP")
 
 @block
 def shadow_finder(
-    clk, reset, start, chain, winner, camera, column, stop, answer, set_up_done, ask, query, aim, fan, begin_set_up,
-    done, config: Configuration,
+    clk, reset, start, chain, winner, camera, column, stop, asks, answer, set_up_done, aim, fan, begin_set_up, done,
+    config: Configuration,
 ):  # fmt: skip
     """Aim the light at a surface, and have all rectangles found that are in the way.
 
@@ -39,10 +39,9 @@ def shadow_finder(
         camera: `Camera`; the light's position is read.
         column: unsigned, `column_bits` bits; the surface's first column.
         stop: unsigned, `column_bits` bits; the column after its last.
-        answer: `Answer`; read after each query.
+        asks: output `Asks`; only ask and query are driven.
+        answer: `Answer`.
         set_up_done: strobe; all entries of the fan are in their table.
-        ask: output strobe; `line_eval` must answer the query.
-        query: output `Query`; valid with ask.
         aim: output `Aim`; valid from begin_set_up to done.
         fan: output `Chain` of the rays from the light; valid from the cycle before begin_set_up to done.
         begin_set_up: output strobe.
@@ -98,15 +97,15 @@ def shadow_finder(
             factor_1.next = 1
             factor_2.next = 0
 
-    asked = query.joined(
+    asked = asks.query.joined(
         from_light=none, left=column, right=last, strict=none, axis_1=axis_1, back_1=back_1, factor_1=factor_1,
         axis_2=winner.axis, back_2=winner.back, factor_2=factor_2, half_line=none, last=none, slot=none, number=axis,
     )  # fmt: skip
 
     @always_comb
     def request():
-        ask.next = (state == ShadowState.AIM) and (axis != 4)
-        query.word.next = asked
+        asks.ask.next = (state == ShadowState.AIM) and (axis != 4)
+        asks.query.word.next = asked
 
     @always_comb
     def narrow():

@@ -18,11 +18,10 @@ from raycaster.rtl.common.widths import (
 from raycaster.rtl.span.chain_stack import chain_stack
 from raycaster.rtl.span.corner_finder import corner_finder
 from raycaster.rtl.span.entry_table import entry_table
-from raycaster.rtl.span.first_change import first_change
 from raycaster.rtl.span.fold import fold
-from raycaster.rtl.span.line_eval import line_eval
+from raycaster.rtl.span.line_desk import line_desk
 from raycaster.rtl.span.painter import painter
-from raycaster.rtl.span.records import Aim, Answer, Chain, Division, Entry, Frame, Query, Surface, count_bits
+from raycaster.rtl.span.records import Aim, Answer, Asks, Chain, Entry, Frame, Surface, count_bits
 from raycaster.rtl.span.run_joiner import run_joiner
 from raycaster.rtl.span.set_up import set_up
 from raycaster.rtl.span.span_control import span_control
@@ -55,11 +54,9 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
 
     first_slope, step, answer = Vector(span_slope_bits(config)), Vector(step_bits(config)), Answer(config)
     chain, winner, heir, swept_heir, entry, tested = Chain(config), *(Entry(config) for _ in range(5))
-    ask, set_up_ask, sweep_ask = (bit() for _ in range(3))
-    query, set_up_query, sweep_query = (Query(config) for _ in range(3))
-    divide, set_up_divide, sweep_divide, divided = (bit() for _ in range(4))
-    division, set_up_division, sweep_division = (Division(config) for _ in range(3))
-    column, columns, stop, swept_stop = (unsigned(width) for _ in range(4))
+    set_up_asks, sweep_asks, corner_asks = Asks(config), Asks(config), Asks(config, asks=mirrors, divides=False)
+    surface_asks = Asks(config, asks=config.patterns or config.light, divides=config.patterns)
+    column, stop, swept_stop = (unsigned(width) for _ in range(3))
     begin_set_up, begin_sweep, begin_paint, begin_emit, fetch = (bit() for _ in range(5))
     set_up_done, sweep_done, emitted, painted = (bit() for _ in range(4))
     gap, inherited, swept_inherited, append, read = (bit() for _ in range(5))
@@ -69,8 +66,6 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
     colour = unsigned(RGB_BITS)
     seen, reached = unsigned(level_bits(config)), unsigned(width)
     seen_share, seen_colour = unsigned(weight_bits(config)), unsigned(RGB_BITS)
-    surface_divide = bit() if config.patterns else tied(0, 1)
-    surface_division = Division(config) if config.patterns else Division(config).tie({})
     aim, fan = Aim(config), Chain(config)
     begin_fan, read_shadow = (bit(), bit()) if config.light else (unconnected(1), unconnected(1))
     shading = bit() if config.light else tied(0, 1)
@@ -83,14 +78,14 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
     walk, part = Rects(config, usable=rects.usable, rect=rects.rect), Run(config)
 
     if mirrors:
-        folded, kept, frame, corner_query = Chain(config), Frame(config), Frame(config), Query(config)
-        begin_corner, cornered, corner, corner_done, corner_ask, push = (bit() for _ in range(6))
+        folded, kept, frame = Chain(config), Frame(config), Frame(config)
+        begin_corner, cornered, corner, corner_done, push = (bit() for _ in range(5))
         part_stop, passed_on = unsigned(width), unsigned(weight_bits(config))
         behind = (
             corner_finder(
                 clk=clk, reset=reset, start=begin_corner, chain=chain, winner=winner, column=column, stop=stop,
-                answer=answer, ask=corner_ask, query=corner_query, needed=cornered, corner=corner, part_stop=part_stop,
-                done=corner_done, config=config,
+                asks=corner_asks, answer=answer, needed=cornered, corner=corner, part_stop=part_stop, done=corner_done,
+                config=config,
             ),
             fold(
                 chain=chain, winner=winner, column=column, stop=part_stop, corner=corner, weight=passed_on,
@@ -113,26 +108,23 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
             kept.word.next = now
 
     else:
-        folded, frame, corner_query = Chain(config).tie({}), Frame(config).tie({}), Query(config).tie({})
-        cornered, corner_done, corner_ask = (tied(0, 1) for _ in range(3))
+        folded, frame = Chain(config).tie({}), Frame(config).tie({})
+        cornered, corner_done = tied(0, 1), tied(0, 1)
         begin_corner, push, passed_on = unconnected(1), unconnected(1), unconnected(1)
 
     if config.patterns or config.light:
-        surface_query = Query(config)
-        surface_ask, go_on, stepped = bit(), bit(), bit()
+        go_on, stepped = bit(), bit()
         next_column = unsigned(width)
         looks = surfaces(
             clk=clk, reset=reset, paint=begin_paint, level=level, share=share, colour=colour, gap=gap, rect=rects.rect,
             chain=chain, winner=winner, camera=camera, column=column, stop=stop, seen=seen, step=go_on, place=reached,
-            answer=answer, divided=divided, columns=columns, set_up_done=set_up_done, entry_count=entry_count,
-            tested=tested, ask=surface_ask, query=surface_query, divide=surface_divide, division=surface_division,
-            aim=aim, fan=fan, begin_set_up=begin_fan, shading=shading, shaded_level=shaded_level, read=read_shadow,
+            asks=surface_asks, answer=answer, set_up_done=set_up_done, entry_count=entry_count, tested=tested, aim=aim,
+            fan=fan, begin_set_up=begin_fan, shading=shading, shaded_level=shaded_level, read=read_shadow,
             read_place=shadow_place, painted=painted, seen_share=seen_share, seen_colour=seen_colour,
             next_column=next_column, stepped=stepped, config=config,
         )  # fmt: skip
     else:
-        surface_query = Query(config).tie({})
-        surface_ask, stepped, next_column, go_on = tied(0, 1), tied(0, 1), tied(0, width), unconnected(1)
+        stepped, next_column, go_on = tied(0, 1), tied(0, width), unconnected(1)
         given, surface = Surface(config), Surface(config)
         plain = given.joined(share=share, colour=colour)
         looks = surface_table(
@@ -175,9 +167,8 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
         count=count, share=share, colour=colour, passed_on=passed_on, config=config,
     )  # fmt: skip
     finder = set_up(
-        clk=clk, reset=reset, start=start_set_up, chain=rays, from_light=shading, rects=walk, answer=answer,
-        divided=divided, columns=columns, ask=set_up_ask, query=set_up_query, divide=set_up_divide,
-        division=set_up_division, append=append, entry=entry, count=entry_count, done=set_up_done, config=config,
+        clk=clk, reset=reset, start=start_set_up, chain=rays, from_light=shading, rects=walk,
+        asks=set_up_asks, answer=answer, append=append, entry=entry, count=entry_count, done=set_up_done, config=config,
     )  # fmt: skip
     table = entry_table(
         clk=clk, level=table_level, shadows=shading, append=append, number=entry_count, entry=entry, read=read,
@@ -185,24 +176,13 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
     )  # fmt: skip
     sweeper = sweep(
         clk=clk, reset=reset, start=begin_sweep, gap=gap, column=column, chain_stop=chain.stop, winner=winner,
-        count=count, tested=tested, answer=answer, divided=divided, columns=columns, read=read_entry, place=entry_place,
-        ask=sweep_ask, query=sweep_query, divide=sweep_divide, division=sweep_division, stop=swept_stop,
+        count=count, tested=tested, asks=sweep_asks, answer=answer, read=read_entry, place=entry_place, stop=swept_stop,
         inherited=swept_inherited, heir=swept_heir, done=sweep_done, config=config,
     )  # fmt: skip
-    evaluator = line_eval(
-        clk=clk,
-        reset=reset,
-        ask=ask,
-        query=query,
-        slope=first_slope,
-        step=step,
-        aim=aim,
-        answer=answer,
-        config=config,
-    )
-    divider = first_change(
-        clk=clk, reset=reset, start=divide, division=division, columns=columns, done=divided, config=config
-    )
+    desk = line_desk(
+        clk=clk, reset=reset, set_up_asks=set_up_asks, sweep_asks=sweep_asks, corner_asks=corner_asks,
+        surface_asks=surface_asks, slope=first_slope, step=step, aim=aim, answer=answer, config=config,
+    )  # fmt: skip
     mixer = painter(
         clk=clk, reset=reset, emit=begin_emit, level=level, stop=stop, picture=picture, seen_share=seen_share,
         seen_colour=seen_colour, next_column=next_column, stepped=stepped, seen=seen, step=go_on, place=reached,
@@ -232,25 +212,5 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
         rects.index.next = walk.index
         if fetch:
             rects.index.next = winner.index
-
-    @always_comb
-    def choose_query():
-        ask.next = set_up_ask or sweep_ask or corner_ask or surface_ask
-        query.word.next = set_up_query.word
-        if sweep_ask:
-            query.word.next = sweep_query.word
-        elif corner_ask:
-            query.word.next = corner_query.word
-        elif surface_ask:
-            query.word.next = surface_query.word
-
-    @always_comb
-    def choose_division():
-        divide.next = set_up_divide or sweep_divide or surface_divide
-        division.word.next = set_up_division.word
-        if sweep_divide:
-            division.word.next = sweep_division.word
-        elif surface_divide:
-            division.word.next = surface_division.word
 
     return instances()

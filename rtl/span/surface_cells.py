@@ -15,8 +15,8 @@ CellsState = enum("IDLE", "WALK")
 
 @block
 def surface_cells(
-    clk, reset, paint, level, kind, rect, chain, winner, column, stop, seen, step, place, answer, divided, columns, ask,
-    query, divide, division, painted, odd_u, odd_v, next_column, stepped, config: Configuration,
+    clk, reset, paint, level, kind, rect, chain, winner, column, stop, seen, step, place, asks, answer, painted, odd_u,
+    odd_v, next_column, stepped, config: Configuration,
 ):  # fmt: skip
     """Hold the cells of the pattern of each level, the number of mirrors before it, at the present column.
 
@@ -37,13 +37,8 @@ def surface_cells(
         step: flag, while nothing is painted; the level that is read goes on to the column place. High up to stepped.
         place: unsigned, `column_bits` bits; the present column from now on, not after next_column of any level that is
             in use. Constant while step is high.
-        answer: `Answer`; read after each query.
-        divided: strobe; `first_change` is done.
-        columns: unsigned, `column_bits` bits; read with divided.
-        ask: output strobe; `line_eval` must answer the query.
-        query: output `Query`; valid with ask.
-        divide: output strobe; `first_change` must take the division.
-        division: output `Division`; valid with divide.
+        asks: output `Asks`.
+        answer: `Answer`.
         painted: output strobe; the surface can be read from the next cycle on.
         odd_u: output flag; the number of the cell along u is odd, at the level that is read. Combinational.
         odd_v: output flag; that of the cell along v.
@@ -168,8 +163,8 @@ def surface_cells(
 
     walker = cell_walker(
         clk=clk, reset=reset, start=entering, find=painting, on_v=on_v, grid=grid, known_cell=next_cell, column=here,
-        answer=answer, divided=divided, columns=columns, ask=ask, query=query, divide=divide, division=division,
-        found_cell=found_cell, next_column=found_next, rises=rises, done=walked, config=config,
+        asks=asks, answer=answer, found_cell=found_cell, next_column=found_next, rises=rises, done=walked,
+        config=config,
     )  # fmt: skip
 
     @always_comb

@@ -16,9 +16,9 @@ LightState = enum("IDLE", "FIND", "SCAN")
 
 @block
 def surface_light(
-    clk, reset, paint, level, unseen, rect, chain, winner, camera, column, stop, seen, step, place, answer, set_up_done,
-    entry_count, tested, ask, query, aim, fan, begin_set_up, busy, looked, read, read_place, painted, dark, next_column,
-    stepped, config: Configuration,
+    clk, reset, paint, level, unseen, rect, chain, winner, camera, column, stop, seen, step, place, asks, answer,
+    set_up_done, entry_count, tested, aim, fan, begin_set_up, busy, looked, read, read_place, painted, dark,
+    next_column, stepped, config: Configuration,
 ):  # fmt: skip
     """Hold for the surface of each level, the number of mirrors before it, whether the present column is in the dark.
 
@@ -41,12 +41,11 @@ def surface_light(
         step: flag, while nothing is painted; the level that is read goes on to the column place. High up to stepped.
         place: unsigned, `column_bits` bits; the present column from now on, not after next_column of any level that is
             in use. Constant while step is high.
-        answer: `Answer`; read after each query.
+        asks: output `Asks`; only ask and query are driven.
+        answer: `Answer`.
         set_up_done: strobe; all shadows of the fan are in their table.
         entry_count: unsigned, `count_bits` bits; their number, read with set_up_done.
         tested: `Entry`; the shadow that was read last.
-        ask: output strobe; `line_eval` must answer the query.
-        query: output `Query`; valid with ask.
         aim: output `Aim`; valid while lines from the light are evaluated.
         fan: output `Chain` of the rays from the light.
         begin_set_up: output strobe; `set_up` must find the shadows.
@@ -144,8 +143,8 @@ def surface_light(
 
     finder = shadow_finder(
         clk=clk, reset=reset, start=find, chain=chain, winner=winner, camera=camera, column=column, stop=stop,
-        answer=answer, set_up_done=set_up_done, ask=ask, query=query, aim=aim, fan=fan, begin_set_up=begin_set_up,
-        done=found, config=config,
+        asks=asks, answer=answer, set_up_done=set_up_done, aim=aim, fan=fan, begin_set_up=begin_set_up, done=found,
+        config=config,
     )  # fmt: skip
     scanner = shadow_scan(
         clk=clk, reset=reset, start=scan, column=here, stop=shadows.stop, count=shadows.count, tested=tested,

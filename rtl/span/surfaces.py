@@ -9,7 +9,7 @@ from raycaster.rtl.common.records import Colour
 from raycaster.rtl.common.widths import KIND_BITS, RGB_BITS, column_bits
 from raycaster.rtl.engine.pattern_colour import pattern_colour
 from raycaster.rtl.engine.shade_colour import shade_colour
-from raycaster.rtl.span.records import Query, Surface
+from raycaster.rtl.span.records import Asks, Surface
 from raycaster.rtl.span.surface_cells import surface_cells
 from raycaster.rtl.span.surface_light import surface_light
 from raycaster.rtl.span.surface_table import surface_table
@@ -17,9 +17,9 @@ from raycaster.rtl.span.surface_table import surface_table
 
 @block
 def surfaces(
-    clk, reset, paint, level, share, colour, gap, rect, chain, winner, camera, column, stop, seen, step, place, answer,
-    divided, columns, set_up_done, entry_count, tested, ask, query, divide, division, aim, fan, begin_set_up, shading,
-    shaded_level, read, read_place, painted, seen_share, seen_colour, next_column, stepped, config: Configuration,
+    clk, reset, paint, level, share, colour, gap, rect, chain, winner, camera, column, stop, seen, step, place, asks,
+    answer, set_up_done, entry_count, tested, aim, fan, begin_set_up, shading, shaded_level, read, read_place, painted,
+    seen_share, seen_colour, next_column, stepped, config: Configuration,
 ):  # fmt: skip
     """Hold the surface of each level, the number of mirrors before it: its share and its colour at the present column.
 
@@ -45,16 +45,11 @@ def surfaces(
         step: flag, while nothing is painted; the level that is read goes on to the column place. High up to stepped.
         place: unsigned, `column_bits` bits; the present column from now on, not after next_column of any level that is
             in use. Constant while step is high.
-        answer: `Answer`; read after each query.
-        divided: strobe; `first_change` is done.
-        columns: unsigned, `column_bits` bits; read with divided.
+        asks: output `Asks`; divide and division are driven with `config.patterns`.
+        answer: `Answer`.
         set_up_done: strobe; all shadows of the fan are in their table. Read with `config.light`, like the two below.
         entry_count: unsigned, `count_bits` bits; their number, read with set_up_done.
         tested: `Entry`; the shadow that was read last.
-        ask: output strobe; `line_eval` must answer the query.
-        query: output `Query`; valid with ask.
-        divide: output strobe; `first_change` must take the division. Driven with `config.patterns`.
-        division: output `Division`; valid with divide.
         aim: output `Aim`; valid while lines from the light are evaluated. Driven with `config.light`, like the six
             below.
         fan: output `Chain` of the rays from the light.
@@ -78,8 +73,7 @@ def surfaces(
     pattern = unsigned(RGB_BITS) if patterns else surface.colour
     cells_painted, cells_stepped = (bit(), bit()) if patterns else (paint, step)
     next_cells = unsigned(width)
-    cells_ask, light_ask = (bit() if there else tied(0, 1) for there in (patterns, light))
-    cells_query, light_query = (Query(config) if there else Query(config).tie({}) for there in (patterns, light))
+    cells_asks, light_asks = Asks(config, asks=patterns, divides=patterns), Asks(config, asks=light, divides=False)
 
     table = surface_table(clk=clk, paint=paint, level=level, given=new, seen=seen, shown=surface, config=config)
 
@@ -104,8 +98,7 @@ def surfaces(
 
         cells = surface_cells(
             clk=clk, reset=reset, paint=paint, level=level, kind=kind, rect=rect, chain=chain, winner=winner,
-            column=column, stop=stop, seen=seen, step=step, place=place, answer=answer, divided=divided,
-            columns=columns, ask=cells_ask, query=cells_query, divide=divide, division=division,
+            column=column, stop=stop, seen=seen, step=step, place=place, asks=cells_asks, answer=answer,
             painted=cells_painted, odd_u=odd_u, odd_v=odd_v, next_column=next_cells, stepped=cells_stepped,
             config=config,
         )  # fmt: skip
@@ -116,10 +109,9 @@ def surfaces(
         lighting = surface_light(
             clk=clk, reset=reset, paint=cells_painted, level=level, unseen=unseen, rect=rect, chain=chain,
             winner=winner, camera=camera, column=column, stop=stop, seen=seen, step=cells_stepped, place=place,
-            answer=answer, set_up_done=set_up_done, entry_count=entry_count, tested=tested, ask=light_ask,
-            query=light_query, aim=aim, fan=fan, begin_set_up=begin_set_up, busy=shading, looked=shaded_level,
-            read=read, read_place=read_place, painted=painted, dark=dark, next_column=next_light, stepped=stepped,
-            config=config,
+            asks=light_asks, answer=answer, set_up_done=set_up_done, entry_count=entry_count, tested=tested, aim=aim,
+            fan=fan, begin_set_up=begin_set_up, busy=shading, looked=shaded_level, read=read, read_place=read_place,
+            painted=painted, dark=dark, next_column=next_light, stepped=stepped, config=config,
         )  # fmt: skip
 
         @always_comb
@@ -162,9 +154,16 @@ def surfaces(
 
     @always_comb
     def request():
-        ask.next = cells_ask or light_ask
-        query.word.next = cells_query.word
-        if light_ask:
-            query.word.next = light_query.word
+        asks.ask.next = cells_asks.ask or light_asks.ask
+        asks.query.word.next = cells_asks.query.word
+        if light_asks.ask:
+            asks.query.word.next = light_asks.query.word
+
+    if patterns:
+
+        @always_comb
+        def request_division():
+            asks.divide.next = cells_asks.divide
+            asks.division.word.next = cells_asks.division.word
 
     return instances()

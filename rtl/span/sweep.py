@@ -13,8 +13,8 @@ SweepState = enum("IDLE", "SCAN", "ORDER", "CROSS", "RIVAL")
 
 @block
 def sweep(
-    clk, reset, start, gap, column, chain_stop, winner, count, tested, answer, divided, columns, read, place, ask,
-    query, divide, division, stop, inherited, heir, done, config: Configuration,
+    clk, reset, start, gap, column, chain_stop, winner, count, tested, asks, answer, read, place, stop, inherited, heir,
+    done, config: Configuration,
 ):  # fmt: skip
     """Find where the span that begins at a column ends, and its heir, in one pass over a chain's entries.
 
@@ -34,15 +34,10 @@ def sweep(
         count: unsigned, `count_bits` bits; number of the chain's entries. All inputs above are constant from start to
             done.
         tested: `Entry`; the entry that was read last.
-        answer: `Answer`; read after each query.
-        divided: strobe; `first_change` is done.
-        columns: unsigned, `column_bits` bits; read with divided.
+        asks: output `Asks`.
+        answer: `Answer`.
         read: output strobe; the table must read the entry at place.
         place: unsigned output, `index_bits` bits; valid with read.
-        ask: output strobe; `line_eval` must answer the query.
-        query: output `Query`; valid with ask.
-        divide: output strobe; `first_change` must take the division.
-        division: output `Division`; valid with divide.
         stop: unsigned output, `column_bits` bits; the column after the span's last. Valid from done to the next start.
         inherited: output flag; an entry is seen at stop. Valid like stop.
         heir: output `Entry`, if inherited: the one that is seen at stop. Valid like stop.
@@ -54,7 +49,7 @@ def sweep(
     state = Signal(SweepState.IDLE)
     rest = unsigned(len(count))
     left, left_1, right, last, bound, crossing, found_at = (unsigned(width) for _ in range(7))
-    found, take, settled, advance, rivalled, ordered = (bit() for _ in range(6))
+    found, take, settled, advance, rivalled, ordered, changes, crosses = (bit() for _ in range(8))
     scanning, in_time, nearer, nearer_heir, same, same_heir, follows, meets = (bit() for _ in range(8))
     rival = Entry(config)
     asked_left, asked_right = unsigned(width), unsigned(width)
@@ -89,7 +84,7 @@ def sweep(
 
     @always_comb
     def see_crossing():
-        crossing.next = (left_1 + columns) % (1 << width)
+        crossing.next = (left_1 + answer.columns) % (1 << width)
 
     # The column at which the tested entry would follow, if it does.
     @always_comb
@@ -117,13 +112,18 @@ def sweep(
                 found_at.next = left_1
             elif answer.right < 0:
                 found.next = follows
-        elif (state == SweepState.CROSS) and divided:
+        elif (state == SweepState.CROSS) and answer.divided:
             found.next = True
             found_at.next = crossing
 
     @always_comb
+    def see_change():
+        changes.next = (answer.left < 0) and (answer.right >= 0)
+
+    @always_comb
     def start_division():
-        divide.next = (state == SweepState.ORDER) and answer.valid and (answer.left < 0) and (answer.right >= 0)
+        crosses.next = (state == SweepState.ORDER) and answer.valid and changes
+        asks.divide.next = (state == SweepState.ORDER) and answer.valid and changes
 
     # Two that follow at the same column are compared there.
     @always_comb
@@ -146,13 +146,13 @@ def sweep(
         if state == SweepState.SCAN:
             settled.next = not ordered
         elif state == SweepState.CROSS:
-            settled.next = divided
+            settled.next = answer.divided
         elif state != SweepState.IDLE:
             settled.next = answer.valid
 
     @always_comb
     def see_advance():
-        advance.next = settled and (rest != 0) and not (rivalled or divide)
+        advance.next = settled and (rest != 0) and not (rivalled or crosses)
         done.next = (state == SweepState.SCAN) and (rest == 0)
 
     @always_comb
@@ -171,7 +171,7 @@ def sweep(
             state.next = SweepState.RIVAL
         elif ordered:
             state.next = SweepState.ORDER
-        elif divide:
+        elif crosses:
             state.next = SweepState.CROSS
 
     @always(clk.posedge)
@@ -230,17 +230,17 @@ def sweep(
         to_tested.next = tested.distance
         later.next = tested.index > rival.index
 
-    asked = query.joined(
+    asked = asks.query.joined(
         from_light=none, left=asked_left, right=asked_right, strict=later, axis_1=tested.axis, back_1=tested.back,
         factor_1=to_rival, axis_2=rival.axis, back_2=rival.back, factor_2=to_tested, half_line=none,
         last=none, slot=none, number=no_number,
     )  # fmt: skip
-    crossed = division.joined(value=answer.left, growth=answer.growth)
+    crossed = asks.division.joined(value=answer.left, growth=answer.growth)
 
     @always_comb
     def request():
-        ask.next = ordered or rivalled
-        query.word.next = asked
-        division.word.next = crossed
+        asks.ask.next = ordered or rivalled
+        asks.query.word.next = asked
+        asks.division.word.next = crossed
 
     return instances()

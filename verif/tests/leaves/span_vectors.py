@@ -22,9 +22,8 @@ from raycaster.rtl.common.interfaces import Rects, Vector
 from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import column_bits, index_bits, level_bits, span_slope_bits, step_bits
 from raycaster.rtl.span.entry_table import entry_table
-from raycaster.rtl.span.first_change import first_change
-from raycaster.rtl.span.line_eval import line_eval
-from raycaster.rtl.span.records import Aim, Answer, Division, Entry, Query, count_bits
+from raycaster.rtl.span.line_desk import line_desk
+from raycaster.rtl.span.records import Aim, Answer, Asks, Entry, count_bits
 from raycaster.rtl.span.records import Chain as ChainRecord
 from raycaster.rtl.span.row_slope import row_slope
 from raycaster.rtl.span.set_up import set_up
@@ -161,20 +160,16 @@ def chain_bench(
         sweep_done: output strobe.
         config: the design.
     """
-    rects, answer, tested, put = Rects(config), Answer(config), Entry(config), Entry(config)
+    rects, tested, put, answer = Rects(config), Entry(config), Entry(config), Answer(config)
+    set_up_asks, sweep_asks = Asks(config), Asks(config)
+    no_corner_asks, no_surface_asks = (Asks(config, asks=False, divides=False) for _ in range(2))
+    never = tied(0, 1)
     memory = [unsigned(len(stored.word)) for _ in range(1 << index_bits(config))]
     known, put_number, putting = unsigned(count_bits(config)), unsigned(count_bits(config)), bit()
-    columns, place, level = (
-        unsigned(column_bits(config)), unsigned(index_bits(config)), tied(0, level_bits(config))
-    )  # fmt: skip
-    never = tied(0, 1)
-    ask, set_up_ask, sweep_ask, divide, set_up_divide, sweep_divide, divided, read = (bit() for _ in range(8))
-    query, set_up_query, sweep_query = (Query(config) for _ in range(3))
-    division, set_up_division, sweep_division = (Division(config) for _ in range(3))
+    read, place, level = bit(), unsigned(index_bits(config)), tied(0, level_bits(config))
     finder = set_up(
-        clk=clk, reset=reset, start=begin_set_up, chain=chain, rects=rects, from_light=never, answer=answer,
-        divided=divided, columns=columns, ask=set_up_ask, query=set_up_query, divide=set_up_divide,
-        division=set_up_division, append=append, entry=entry, count=count, done=set_up_done, config=config,
+        clk=clk, reset=reset, start=begin_set_up, chain=chain, from_light=never, rects=rects, asks=set_up_asks,
+        answer=answer, append=append, entry=entry, count=count, done=set_up_done, config=config,
     )  # fmt: skip
     table = entry_table(
         clk=clk, level=level, shadows=never, append=putting, number=put_number, entry=put, read=read, place=place,
@@ -182,24 +177,13 @@ def chain_bench(
     )  # fmt: skip
     sweeper = sweep(
         clk=clk, reset=reset, start=begin_sweep, gap=gap, column=column, chain_stop=chain.stop, winner=winner,
-        count=known, tested=tested, answer=answer, divided=divided, columns=columns, read=read, place=place,
-        ask=sweep_ask, query=sweep_query, divide=sweep_divide, division=sweep_division, stop=swept_stop,
+        count=known, tested=tested, asks=sweep_asks, answer=answer, read=read, place=place, stop=swept_stop,
         inherited=inherited, heir=heir, done=sweep_done, config=config,
     )  # fmt: skip
-    evaluator = line_eval(
-        clk=clk,
-        reset=reset,
-        ask=ask,
-        query=query,
-        slope=slope,
-        step=step,
-        aim=Aim(config),
-        answer=answer,
-        config=config,
-    )
-    divider = first_change(
-        clk=clk, reset=reset, start=divide, division=division, columns=columns, done=divided, config=config
-    )
+    desk = line_desk(
+        clk=clk, reset=reset, set_up_asks=set_up_asks, sweep_asks=sweep_asks, corner_asks=no_corner_asks,
+        surface_asks=no_surface_asks, slope=slope, step=step, aim=Aim(config), answer=answer, config=config,
+    )  # fmt: skip
 
     @always_comb
     def choose_entry():
@@ -218,16 +202,8 @@ def chain_bench(
             known.next = known + 1
 
     @always_comb
-    def choose():
+    def show_usable():
         rects.usable.next = usable
-        ask.next = set_up_ask or sweep_ask
-        divide.next = set_up_divide or sweep_divide
-        query.word.next = set_up_query.word
-        division.word.next = set_up_division.word
-        if sweep_ask:
-            query.word.next = sweep_query.word
-        if sweep_divide:
-            division.word.next = sweep_division.word
 
     @always(clk.posedge)
     def keep():
@@ -420,20 +396,16 @@ def cells_bench(
         stepped: output strobe.
         config: the design.
     """
-    answer, query, division = Answer(config), Query(config), Division(config)
-    answer.half_line, answer.last, answer.slot = (unconnected(1) for _ in range(3))
-    ask, divide, divided, columns = bit(), bit(), bit(), unsigned(column_bits(config))
+    no_tags = {name: unconnected(1) for name in ("half_line", "last", "slot")}
+    answer, asks = Answer(config, **no_tags), Asks(config)
+    no_sweep_asks, no_corner_asks, no_surface_asks = (Asks(config, asks=False, divides=False) for _ in range(3))
     cells = surface_cells(
         clk=clk, reset=reset, paint=paint, level=level, kind=kind, rect=rect, chain=chain, winner=winner, column=column,
-        stop=stop, seen=seen, step=step, place=place, answer=answer, divided=divided, columns=columns, ask=ask,
-        query=query, divide=divide, division=division, painted=painted, odd_u=odd_u, odd_v=odd_v,
-        next_column=next_column, stepped=stepped, config=config,
+        stop=stop, seen=seen, step=step, place=place, asks=asks, answer=answer, painted=painted, odd_u=odd_u,
+        odd_v=odd_v, next_column=next_column, stepped=stepped, config=config,
     )  # fmt: skip
-    evaluator = line_eval(
-        clk=clk, reset=reset, ask=ask, query=query, slope=slope, step=step_slope, aim=Aim(config), answer=answer,
-        config=config,
+    desk = line_desk(
+        clk=clk, reset=reset, set_up_asks=asks, sweep_asks=no_sweep_asks, corner_asks=no_corner_asks,
+        surface_asks=no_surface_asks, slope=slope, step=step_slope, aim=Aim(config), answer=answer, config=config,
     )  # fmt: skip
-    divider = first_change(
-        clk=clk, reset=reset, start=divide, division=division, columns=columns, done=divided, config=config
-    )
     return instances()

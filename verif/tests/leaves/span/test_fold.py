@@ -61,7 +61,7 @@ def test_corner_finder(leaf_of, random):
     width = column_bits(config)
     leaf = leaf_of(
         corner_finder, config, start=bit, chain=lambda: records.Chain(config), winner=lambda: records.Entry(config),
-        column=width, stop=width, answer=lambda: records.Answer(config), query=lambda: records.Query(config),
+        column=width, stop=width, asks=lambda: records.Asks(config), answer=lambda: records.Answer(config),
         part_stop=width,
     )  # fmt: skip
     leaf.case({"reset": 1, "answer_valid": 0})
@@ -81,13 +81,15 @@ def test_corner_finder(leaf_of, random):
         }
         winner = {"axis": axis, "back": int(random.integers(2)), "distance": int(random.integers(1, 900))}
         held = named("chain", fields | {"mirrored": mirrored}) | by_axis("chain_met_", met) | named("winner", winner)
-        leaf.case(held | {"reset": 0, "start": 1, "column": column, "stop": stop}, {"needed": needed, "ask": needed})
+        leaf.case(
+            held | {"reset": 0, "start": 1, "column": column, "stop": stop}, {"needed": needed, "asks_ask": needed}
+        )
         asked = {"left": column, "right": stop - 1, "strict": 0, "half_line": 0}
         asked |= {f"{name}_1": fields[name] for name in ("axis", "back")} | {"factor_1": winner["distance"]}
         asked |= {f"{name}_2": winner[name] for name in ("axis", "back")} | {"factor_2": fields["distance"]}
-        leaf.expect(named("query", asked), when=needed)
+        leaf.expect(named("asks_query", asked), when=needed)
         part, corner = stop, 0
-        leaf.case({"start": 0}, {"ask": 0, "done": 0})
+        leaf.case({"start": 0}, {"asks_ask": 0, "done": 0})
         if needed:
             leaf.stimulus += [{}] * (ANSWER - 2)
             leaf.case({"answer_valid": 1, "answer_left": ends[0], "answer_right": ends[1]}, {"done": 1})

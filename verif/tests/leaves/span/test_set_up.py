@@ -14,11 +14,10 @@ from raycaster.golden.spans import ANSWER, Drawing, Line, SpanModel
 from raycaster.golden.spans import Chain as Fan
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.hdl.signals import bit
-from raycaster.rtl.common.widths import column_bits
 from raycaster.rtl.span.clipper import clipper
 from raycaster.rtl.span.first_change import quotient_bits
 from raycaster.rtl.span.half_lines import half_lines
-from raycaster.rtl.span.records import Answer, Chain, Division, Entry, Query
+from raycaster.rtl.span.records import Answer, Asks, Chain, Entry
 from raycaster.verif.random_world import random_camera, random_rectangles
 
 DESIGNS = [
@@ -105,7 +104,7 @@ def test_half_lines(options, leaf_of, random):
     """The lines of one rectangle have the values of the contract at the ends of the chain, and come in its order."""
     config = span_config(**options)
     ports = {
-        "start": bit, "chain": lambda: Chain(config), "answer": lambda: Answer(config), "query": lambda: Query(config),
+        "start": bit, "chain": lambda: Chain(config), "asks": lambda: Asks(config), "answer": lambda: Answer(config),
         "entry": lambda: Entry(config),
     }  # fmt: skip
     leaf = leaf_of(half_lines, config, **ports)
@@ -146,21 +145,21 @@ def test_half_lines(options, leaf_of, random):
                 "factor_1": 1,
                 "factor_2": 0,
             }
-            leaf.expected[leaf.cycle - ANSWER] |= named("query", asked) | {"ask": 1, "query_strict": 0}
+            leaf.expected[leaf.cycle - ANSWER] |= named("asks_query", asked) | {"asks_ask": 1, "asks_query_strict": 0}
             leaf.case({"answer_valid": 1, **named("answer", {"number": axis, "left": left, "right": right})})
         leaf.case({"answer_valid": 0})
         drawing = Drawing(SpanModel(table, (0, 0, 0), (0, 0, 0), config.screen_geometry.columns, 0), slope)
         lines = drawing.half_lines(
             chain, next(one for one in drawing.model.table if one.index == index), slope, surface
         )
-        leaf.expect({"opened": int(bool(lines)), "ask": 0})
+        leaf.expect({"opened": int(bool(lines)), "asks_ask": 0})
         for number, line in lines.items():
             numbers.add(number)
-            leaf.case({}, {"ask": 1, "query_half_line": 1, "query_number": number, "walked": 0})
-            leaf.expect({"query_last": int(number == max(lines))})
-            leaf.expect({"query_left": chain.start, "query_right": chain.stop - 1})
+            leaf.case({}, {"asks_ask": 1, "asks_query_half_line": 1, "asks_query_number": number, "walked": 0})
+            leaf.expect({"asks_query_last": int(number == max(lines))})
+            leaf.expect({"asks_query_left": chain.start, "asks_query_right": chain.stop - 1})
             asked_lines[leaf.cycle - 1] = (*slope, surface), line
-        leaf.case({"done": 1}, {"walked": 1, "ask": 0})
+        leaf.case({"done": 1}, {"walked": 1, "asks_ask": 0})
         leaf.case({"done": 0}, {"walked": 0})
     outputs = leaf.check(spare=True)
     # A point lies across x, where the slope of a camera that does not turn never changes its sign.
@@ -171,23 +170,25 @@ def test_half_lines(options, leaf_of, random):
     }
     for cycle, (slope, line) in asked_lines.items():
         seen = outputs[cycle]
-        components = [(slope[seen[f"query_axis_{one}"]], -1 if seen[f"query_back_{one}"] else 1) for one in (1, 2)]
-        bits = leaf.seen["query_factor_1"].width
-        factors = [(seen[f"query_factor_{one}"] ^ 1 << bits - 1) - (1 << bits - 1) for one in (1, 2)]
-        for column in (seen["query_left"], seen["query_right"]):
+        components = [
+            (slope[seen[f"asks_query_axis_{one}"]], -1 if seen[f"asks_query_back_{one}"] else 1) for one in (1, 2)
+        ]
+        bits = leaf.seen["asks_query_factor_1"].width
+        factors = [(seen[f"asks_query_factor_{one}"] ^ 1 << bits - 1) - (1 << bits - 1) for one in (1, 2)]
+        for column in (seen["asks_query_left"], seen["asks_query_right"]):
             x, y = (component.at(column) * sign for component, sign in components)
-            assert factors[0] * x - factors[1] * y - seen["query_strict"] == line.at(column), f"cycle {cycle}"
+            assert factors[0] * x - factors[1] * y - seen["asks_query_strict"] == line.at(column), f"cycle {cycle}"
 
 
 def test_clipper(leaf_of, random):
     """Answers of one rectangle after the other, while divisions of the one before are under way."""
     config = span_config(screen="tiny", rectangles=8, reflections=1)
     ports = {
-        "chain": lambda: Chain(config), "met": lambda: Entry(config), "answer": lambda: Answer(config),
-        "columns": column_bits(config), "division": lambda: Division(config), "entry": lambda: Entry(config),
+        "chain": lambda: Chain(config), "met": lambda: Entry(config), "asks": lambda: Asks(config),
+        "answer": lambda: Answer(config), "entry": lambda: Entry(config),
     }  # fmt: skip
     leaf, steps = leaf_of(clipper, config, **ports), quotient_bits(config)
-    leaf.case({"reset": 1, "divided": 0, "opened": 0, "answer_valid": 0, "answer_half_line": 1})
+    leaf.case({"reset": 1, "answer_divided": 0, "opened": 0, "answer_valid": 0, "answer_half_line": 1})
     slot, kinds = 0, set()
     for _ in range(leaf.some(240)):
         start = int(random.integers(60))
@@ -209,16 +210,18 @@ def test_clipper(leaf_of, random):
         if not rejected:
             for line in lines:
                 if (line.at(start) < 0) != (line.at(stop - 1) < 0) and low < high:
-                    leaf.expect({"divide": 1, "division_value": line.at(start), "division_growth": line.growth})
+                    leaf.expect(
+                        {"asks_divide": 1, "asks_division_value": line.at(start), "asks_division_growth": line.growth}
+                    )
                     change = next(x for x in range(start, stop) if (line.at(x) < 0) != (line.at(start) < 0))
                     leaf.stimulus += [{}] * steps
-                    leaf.stimulus += [{"divided": 1, "columns": change - start}, {"divided": 0}]
+                    leaf.stimulus += [{"answer_divided": 1, "answer_columns": change - start}, {"answer_divided": 0}]
                     if line.at(start) < 0:
                         low = max(low, change)
                     else:
                         high = min(high, change)
         assert inside == ([] if rejected else [*range(low, high)])
-        leaf.expect({"divide": 0})
+        leaf.expect({"asks_divide": 0})
         leaf.case({}, {"append": int(bool(inside)), "idle": 1, "free": 1})
         leaf.expect({"entry_start": low, "entry_stop": high, "entry_distance": distance}, when=inside)
         kinds.add((rejected, low < high, inside == [*range(start, stop)]))

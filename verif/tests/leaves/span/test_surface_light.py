@@ -17,7 +17,7 @@ from raycaster.rtl.span.surface_light import surface_light
 
 def light_ports(config) -> dict:
     width = column_bits(config)
-    kinds = {"chain": records.Chain, "winner": records.Entry, "answer": records.Answer, "query": records.Query}
+    kinds = {"chain": records.Chain, "winner": records.Entry, "asks": records.Asks, "answer": records.Answer}
     kinds |= {"fan": records.Chain, "aim": records.Aim}
     made = {name: lambda kind=kind: kind(config) for name, kind in kinds.items()}
     return made | {"column": width, "stop": width}
@@ -46,27 +46,30 @@ def test_shadow_finder(turn, leaf_of, random):
             queries.append([(eye[u] - light[u]) * ahead.at(c) + distance * aside.at(c) for c in (column, stop - 1)])
         queries.append([ahead.at(column), ahead.at(stop - 1)])
         for number, values in enumerate(queries):
-            leaf.case({"start": 0}, {"ask": 1, "query_number": number, "query_left": column, "query_right": stop - 1})
-            leaf.expect({"query_from_light": 0, "query_half_line": 0, "query_strict": 0})
+            leaf.case(
+                {"start": 0},
+                {"asks_ask": 1, "asks_query_number": number, "asks_query_left": column, "asks_query_right": stop - 1},
+            )
+            leaf.expect({"asks_query_from_light": 0, "asks_query_half_line": 0, "asks_query_strict": 0})
             asked[leaf.cycle - 1] = slope, values
         leaf.stimulus += [{}] * (ANSWER - 4)
         answers = [[int(one) for one in random.integers(-1000, 1000, 3)] for _ in range(4)]
         for number, (left, right, growth) in enumerate(answers):
             ends = {"left": left, "right": right, "growth": growth, "number": number}
-            leaf.case({"answer_valid": 1, **named("answer", ends)}, {"ask": 0, "begin_set_up": 0})
+            leaf.case({"answer_valid": 1, **named("answer", ends)}, {"asks_ask": 0, "begin_set_up": 0})
         wanted = {f"aim_{end}_{one}": answers[place][at] for at, end in enumerate(("left", "right", "growth"))
                   for place, one in enumerate("xyze")}  # fmt: skip
         fan = by_axis("fan_eye_", light) | {"fan_start": column, "fan_stop": stop, "fan_mirrored": 0}
         leaf.case({"answer_valid": 0}, wanted | fan | by_axis("fan_back_", (0, 0, 0)) | {"begin_set_up": 1, "done": 0})
         leaf.stimulus += [{}] * int(random.integers(5))
         leaf.case({"set_up_done": 1}, {"done": 1, "begin_set_up": 0})
-        leaf.case({"set_up_done": 0}, {"done": 0, "ask": 0})
+        leaf.case({"set_up_done": 0}, {"done": 0, "asks_ask": 0})
     outputs = leaf.check(spare=True)
-    bits = leaf.seen["query_factor_1"].width
+    bits = leaf.seen["asks_query_factor_1"].width
     for cycle, (slope, values) in asked.items():
         seen = outputs[cycle]
-        parts = [[seen[f"query_{name}_{one}"] for name in ("axis", "back", "factor")] for one in (1, 2)]
-        for there, value in zip((seen["query_left"], seen["query_right"]), values, strict=True):
+        parts = [[seen[f"asks_query_{name}_{one}"] for name in ("axis", "back", "factor")] for one in (1, 2)]
+        for there, value in zip((seen["asks_query_left"], seen["asks_query_right"]), values, strict=True):
             x, y = (
                 (-1 if back else 1) * slope[axis].at(there) * ((factor ^ 1 << bits - 1) - (1 << bits - 1))
                 for axis, back, factor in parts
