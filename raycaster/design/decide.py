@@ -57,13 +57,15 @@ def decided(options: Options) -> Configuration:
             f"pixels: the {options.engine} engine has 1 per clock, not {options.pixels}; {_instead(options)}"
         )
     engine.refuse(options)
+    # Culling shortens the long slots of a division; a fixed scene leaves out more.
+    culls = engine.facts.divides and fixed is None
     decisions = {
         "units": options.units or 1,
         "rectangles": len(fixed.rectangles) if fixed else options.rectangles,
         "rows": rows,
         "scale": scale,
         "divider_bits": 0,
-        "culling": engine.culls(options) if options.culling is None else options.culling,
+        "culling": culls if options.culling is None else options.culling,
         **{feature: bool(getattr(options, feature)) for feature in FEATURES},
         "facts": engine.facts,
     }

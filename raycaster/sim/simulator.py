@@ -46,6 +46,7 @@ from raycaster.places import ODD_FOR_SHELLS, ODD_FOR_TOOLS, odd_character
 from raycaster.registers import address_bits
 from raycaster.runs.digests import sources_digest, tools_digest
 from raycaster.runs.waits import building
+from raycaster.sim.bus_signals import bus_files
 from raycaster.sim.job import Job
 
 SIMULATORS = ("verilator", "icarus")
@@ -155,11 +156,7 @@ class Bench:
 
     def included(self, configuration: Configuration) -> dict[str, str]:
         """Return the files that its Verilog includes, for a design: their texts by name."""
-        if configuration.bus == OWN:
-            return {}
-        from raycaster.sim.bus_signals import bus_files  # noqa: PLC0415 - MyHDL is only loaded where it has work
-
-        return bus_files(configuration)
+        return {} if configuration.bus == OWN else bus_files(configuration)
 
     def parameters(self, configuration: Configuration) -> dict[str, int]:
         """Return the parameters of its Verilog, for a design."""

@@ -53,18 +53,6 @@ class Beam(Engine):
         """Return rows and lanes."""
         return f"{config.screen_geometry.rows}p" + (" x2" if config.pixels == 2 else "")
 
-    def rect_cycles(self, config: Configuration) -> int:
-        """Return 0, as all rectangles are tested at once."""
-        return 0
-
-    def pass_latency(self, config: Configuration) -> int:
-        """Return 0, as every pass starts again in each clock."""
-        return 0
-
-    def group_cycles(self, config: Configuration) -> int:
-        """Return 1, as a group is the pixels of one clock."""
-        return 1
-
     def check(self, config: Configuration) -> None:
         """Refuse a design that cannot set up a line within the monitor's blanking."""
         if (left := blanking_left(config)) >= 0:

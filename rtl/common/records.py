@@ -147,20 +147,13 @@ class Facet(Record):
     """A rectangle as seen by the rays of one row from the camera; see `Walk` for the axis q.
 
     usable: it may be hit; distance: n = k - E[a] from the camera to its plane. Unless the camera turns, way_q: n D[q],
-    the same for all columns. Unless the facet is `bare`, its lowest bits are the rectangle's `Look`.
+    the same for all columns. Unless it has no `look`, its lowest bits are the rectangle's `Look`.
     """
 
-    def __init__(
-        self,
-        config: Configuration,
-        way_bits: int | None = None,
-        distance_bits: int = DISTANCE_BITS,
-        *,
-        bare: bool = False,
-    ):
-        look = {name: bits * (not bare) for name, bits in look_fields(config).items()}
-        way_q = Signed((way_bits or walk_bits(config)) * (not config.turn))
-        super().__init__({"usable": 1, "axis": AXIS_BITS, "distance": Signed(distance_bits), "way_q": way_q} | look)
+    def __init__(self, config: Configuration, way: int | None = None, distance: int = DISTANCE_BITS, look: bool = True):
+        looks = {name: bits * look for name, bits in look_fields(config).items()}
+        way_q = Signed((way or walk_bits(config)) * (not config.turn))
+        super().__init__({"usable": 1, "axis": AXIS_BITS, "distance": Signed(distance), "way_q": way_q} | looks)
 
 
 class Walk(Record):

@@ -55,7 +55,7 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
 
     copy = Rects(config, usable=rects.usable, rect=WideRect())
     load, found = unsigned(rectangles), unsigned(rectangles)
-    facet, growth, start = Facet(config, bare=True), Walk(config, WIDE_BITS), Walk(config, wide_walk_bits(config))
+    facet, growth, start = Facet(config, look=False), Walk(config, WIDE_BITS), Walk(config, wide_walk_bits(config))
 
     copies = rect_copy(clk, rects=rects, copy=copy, margin=config.facts.margin, config=config)
     sweep = rect_setup(

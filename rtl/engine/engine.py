@@ -47,10 +47,6 @@ class Engine(ABC):
             either = f"{as_typed('culling')} or {as_typed('fix')}"
             raise ValueError(f"culling: does not apply to a fixed scene; leave out {either}")
 
-    def culls(self, options: Options) -> bool:
-        """Return True if a design has culling by default."""
-        return False
-
     @abstractmethod
     def sized(self, config: Configuration, options: Options) -> Configuration:
         """Choose the number of units and, for an engine that divides, the divider.
@@ -63,17 +59,17 @@ class Engine(ABC):
             ValueError: the user's options are not possible.
         """
 
-    @abstractmethod
     def rect_cycles(self, config: Configuration) -> int:
         """Return the cycles from one rectangle to the next; 0 if all are tested at once."""
+        return 0
 
-    @abstractmethod
     def pass_latency(self, config: Configuration) -> int:
-        """Return the cycles from the end of a pass's last rectangle to the first cycle of the next pass."""
+        """Return the cycles from a pass's last rectangle to the next pass; 0 if passes start in every clock."""
+        return 0
 
-    @abstractmethod
     def group_cycles(self, config: Configuration) -> int:
-        """Return the cycles per group in the worst case, with all rectangles enabled."""
+        """Return the cycles per group in the worst case, with all rectangles enabled; 1 for the pixels of one clock."""
+        return 1
 
     @abstractmethod
     def describe(self, config: Configuration) -> str:

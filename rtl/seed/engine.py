@@ -23,10 +23,6 @@ class Seed(LineBufferedEngine):
     A rounded coordinate is off by less than one, and the depth is measured along x.
     """
 
-    def culls(self, options: Options) -> bool:
-        """Return True, as culling shortens the long slots, except for a fixed scene, which leaves out more."""
-        return options.fixed is None
-
     def sized(self, config: Configuration, options: Options) -> Configuration:
         """Take 32 units, or the fewest that a fixed scene needs, and the smallest divider that meets the row budget."""
         given = options.divider_bits

@@ -6,7 +6,7 @@ from raycaster.debug.probes.beam import BeamProbes
 from raycaster.debug.probes.exact import ExactProbes
 from raycaster.debug.probes.ray import Description
 from raycaster.debug.probes.seed import SeedProbes
-from raycaster.errors import UserError, listed
+from raycaster.errors import UserError
 from raycaster.rtl.engines import BEAM, EXACT, SEED, engine_of
 
 DESCRIPTIONS = {SEED: SeedProbes, EXACT: ExactProbes, BEAM: BeamProbes}
@@ -20,6 +20,5 @@ def description_of(config: Configuration, unit: int) -> Description:
         UserError: the engine has none.
     """
     if engine_of(config) not in DESCRIPTIONS:
-        able = listed([engine.facts.name for engine in DESCRIPTIONS])
-        raise UserError(f"engine: expected {able} for a trace, got {config.engine}, whose signals are not described")
+        raise UserError(f"engine: the signals of {config.engine} are not described; choose another for a trace")
     return DESCRIPTIONS[engine_of(config)](config, unit)
