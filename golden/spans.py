@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -27,7 +28,8 @@ from raycaster.screens import Screen
 ANSWER = 5
 """Cycles from a line's query to its values."""
 
-Vector = tuple[int, int, int]
+Vector = tuple[int, ...]
+"""Coordinates or channels, three of them."""
 
 
 class Line(NamedTuple):
@@ -51,7 +53,7 @@ def first_change(value: int, growth: int) -> int:
     return 1 + (~value if value < 0 else value) // abs(growth)
 
 
-Rays = tuple[Line, Line, Line]
+Rays = tuple[Line, ...]
 """The slope of rays, in one component after the other."""
 
 
@@ -87,7 +89,7 @@ class Chain(NamedTuple):
     start: int
     stop: int
     eye: Vector
-    back: tuple[bool, bool, bool]
+    back: tuple[bool, ...]
     """Components of the slope that have changed their sign."""
 
     distance: int = 0
@@ -207,8 +209,10 @@ class SpanModel:
     reflections: int
     light: Light | None = None
 
-    def __post_init__(self):
-        object.__setattr__(self, "table", tuple(_rects(self.rectangles)))
+    @cached_property
+    def table(self) -> tuple[Rect, ...]:
+        """The rectangles that can be seen."""
+        return tuple(_rects(self.rectangles))
 
     def row(self, slope: Sequence[int], step: Sequence[int]) -> Row:
         """Draw a row.
@@ -316,7 +320,7 @@ class Drawing:
             self.now += 1
             part, corner = self.corner(chain, column, stop, winner) if winner and quarters else (stop, False)
             self.shown.append(self.paint(chain, column, stop, winner, weight * (4 - quarters) // 4))
-            if quarters:
+            if winner and quarters:
                 self.now += 1
                 self.chain(self.behind(chain, winner, column, part, corner), weight * quarters // 4)
                 # The frame is read, and the winner's rectangle too if there is a second part.
@@ -370,7 +374,7 @@ class Drawing:
             self.follow(cells, column, stop)
             surface.cells.append(cells)
         if self.model.light:
-            self.shade(surface, chain, column, winner)
+            self.shade(surface, chain, column, winner, self.model.light.position)
         return surface
 
     def follow(self, cells: Cells, column: int, stop: int) -> None:
@@ -388,9 +392,9 @@ class Drawing:
             self.now += self.division
             cells.next += first_change(line.at(column), line.growth)
 
-    def shade(self, surface: Surface, chain: Chain, column: int, winner: Entry) -> None:
+    def shade(self, surface: Surface, chain: Chain, column: int, winner: Entry, light: Vector) -> None:
         """Find the shadows on a surface."""
-        light, axis, plane = self.model.light.position, winner.rect.axis, winner.rect.plane
+        axis, plane = winner.rect.axis, winner.rect.plane
         # The rays come from the side of the eye.
         if (light[axis] - plane) * (plane - chain.eye[axis]) >= 0:
             surface.dark = True

@@ -86,7 +86,7 @@ def painter(
     else:
 
         @always_comb
-        def find_place():
+        def show_place():
             place.next = stop
 
     @always_comb

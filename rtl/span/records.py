@@ -120,10 +120,9 @@ class Cells(Record):
     """
 
     def __init__(self, config: Configuration):
+        cells, columns = PLACE_BITS, column_bits(config)
         super().__init__(
-            dict.fromkeys(("cell_u", "cell_v"), PLACE_BITS)
-            | dict.fromkeys(("rises_u", "rises_v"), 1)
-            | dict.fromkeys(("next_u", "next_v"), column_bits(config))
+            {"cell_u": cells, "cell_v": cells, "rises_u": 1, "rises_v": 1, "next_u": columns, "next_v": columns}
         )
 
 

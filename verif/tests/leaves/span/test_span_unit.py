@@ -46,7 +46,9 @@ def unit_bench(leaf_of, config: Configuration):
     return leaf_of(frame_bench, config, run=lambda: Run(config), **ports)
 
 
-def drawn(leaf, frames: Sequence[Frame], ready=lambda: 1, most: int | None = None) -> Iterator[list[Row]]:
+def drawn(
+    leaf, frames: Sequence[Frame], ready=lambda: 1, most: int | None = None, cuts: Sequence[int] = ()
+) -> Iterator[list[Row]]:
     """Simulate frames, in Verilog with unknown values at power-up, and yield the rows of each.
 
     Args:
@@ -54,11 +56,14 @@ def drawn(leaf, frames: Sequence[Frame], ready=lambda: 1, most: int | None = Non
         frames: frames to draw.
         ready: returns whether a run is taken in the next cycle.
         most: number of rows to draw, all by default.
+        cuts: cycles after which a reset ends the first frame, each time it begins.
     """
     screen = leaf.screen
     count = most or screen.rows
     expected = [list(islice(frame.model(screen).rows(screen, frame.basis), count)) for frame in frames]
     begins, stimulus = [], [{"reset": 1, "first_row": 0, "store": 0, "run_ready": 1}] * 3
+    for cut in cuts:
+        stimulus += [*frame_inputs(frames[0]), *[{}] * cut, {"reset": 1}]
     for frame, rows in zip(frames, expected, strict=True):
         stimulus += frame_inputs(frame)
         # The first row begins two cycles after first_row.
@@ -136,6 +141,20 @@ def test_packaged_scenes(name, leaf_of):
     leaf = unit_bench(leaf_of, config)
     leaf.screen = config.screen_geometry
     check_frames(leaf, [scene_frame(scene)])
+
+
+def test_a_reset_ends_a_row(leaf_of, random):
+    """After a reset in any cycle, a frame is drawn as ever."""
+    config = DESIGNS[-1]
+    leaf = unit_bench(leaf_of, config)
+    leaf.screen = config.screen_geometry
+    for _ in range(2 if leaf.few else 12):
+        frame = any_frame(random, config)
+        [rows] = drawn(leaf, [frame], most=2, cuts=random.integers(300, size=12).tolist())
+        assert rows == [
+            replace(row, steps=Row().steps)
+            for row in islice(frame.model(leaf.screen).rows(leaf.screen, frame.basis), 2)
+        ]
 
 
 def test_runs_wait(leaf_of, random):
