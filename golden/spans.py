@@ -194,6 +194,9 @@ class Row:
     cycles: int = 0
     """Clock cycles from the start, which counts, to the row's end, if each run is taken at once."""
 
+    taken: list[int] = field(default_factory=list)
+    """Clock cycles from the start to that in which each run is taken."""
+
     steps: Counter = field(default_factory=Counter)
     """Numbers of chains, rectangles that were tested, divisions, entries, passes, spans and the like."""
 
@@ -293,6 +296,7 @@ class Drawing:
         self.chain(start, 4**self.model.reflections)
         # The last run passes two registers.
         self.result.cycles = self.now + 2
+        self.result.taken.append(self.now + 1)
         return self.result
 
     # -- Chains and their spans
@@ -454,6 +458,8 @@ class Drawing:
         runs = self.result.runs
         if runs and runs[-1][1] == mixed:
             runs.pop()
+        elif runs:
+            self.result.taken.append(self.now)  # nothing can be joined to the run before
         runs.append((end, mixed))
 
     # -- The entries of a chain

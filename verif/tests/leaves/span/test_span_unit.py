@@ -89,6 +89,7 @@ def drawn(
             if seen["run_valid"] and seen["ready"] and len(rows) < count:
                 assert None not in (seen["run_end"], seen["run_colour"]), f"cycle {cycle}: unknown"
                 row.runs.append((seen["run_end"], tuple(seen["run_colour"].to_bytes(3))))
+                row.taken.append(cycle - start)
         yield rows
 
 
@@ -99,6 +100,7 @@ def check_frames(leaf, frames: Sequence[Frame], most: int | None = None) -> None
         wanted = list(islice(frame.model(screen).rows(screen, frame.basis), most))
         for number, (row, expected) in enumerate(zip(rows, wanted, strict=False)):
             assert (row.runs, row.cycles) == (expected.runs, expected.cycles), f"row {number}"
+            assert row.taken == expected.taken, f"row {number}"
             assert all(one != other for (_, one), (_, other) in pairwise(row.runs))
         assert len(rows) == len(wanted)
         picture = frame.picture(replace(screen, rows=len(rows)))

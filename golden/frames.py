@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""The time of a frame of the span engine, whose units draw rows in turn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from raycaster.golden.spans import Row
+
+FIRST_START = 4
+"""Cycles from the StartScreen at which a frame begins to its first row's start, if the units are ready."""
+
+AHEAD = 4
+"""Runs that have left a queue's memory and have not been collected."""
+
+OFFERED = 3
+"""Cycles from the fetch of a run from a queue's memory to that in which it may be collected."""
+
+
+def frame_cycles(rows: Iterable[Row], columns: int, units: int = 1, places: int = 0, first: int = FIRST_START) -> int:
+    """Return the cycles from the StartScreen at which a frame begins until its list is whole.
+
+    Unit i draws the rows i, i + units, and so on. A row starts when its unit is done with the one before and, with more
+    than one unit, has room for a whole row in its queue, but at the earliest in the cycle after the row above. Runs are
+    collected row by row, one per cycle.
+
+    Args:
+        rows: the rows, from the top.
+        columns: columns of a row.
+        units: number of units.
+        places: runs that the queue of a unit holds; not used with one unit.
+        first: cycles from StartScreen to the first row's start.
+    """
+    free = [first] * units
+    fetched: list[list[int]] = [[] for _ in range(units)]
+    collected: list[list[int]] = [[] for _ in range(units)]
+    last, above = 0, first - 1
+    for number, row in enumerate(rows):
+        unit = number % units
+        fetches, takes = fetched[unit], collected[unit]
+        start = max(free[unit], above + 1)
+        if units > 1 and len(fetches) > places - columns:
+            start = max(start, fetches[len(fetches) - (places - columns) - 1] + 1)
+        free[unit], above = start + row.cycles, start
+        for offset in row.taken:
+            if units == 1:
+                last = start + offset
+                continue
+            fetch = start + offset + 1
+            if fetches:
+                fetch = max(fetch, fetches[-1] + 1)
+            if len(takes) >= AHEAD:
+                fetch = max(fetch, takes[-AHEAD] + 1)
+            last = max(last + 1, fetch + OFFERED)
+            fetches.append(fetch)
+            takes.append(last)
+    return last + 1
