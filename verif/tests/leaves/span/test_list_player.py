@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: MIT
 """Leaf test of `list_player`: one list is shown, in lines of all lengths of runs, while the other one is written."""
 
+from dataclasses import replace
+
+import pytest
 from list_vectors import PIXEL_BITS, Beam, any_frame, entry, list_screen, pixels_of, side_by_side
 from vectors import by, named
 
-from raycaster.rtl.common.interfaces import Scan
+from raycaster.rtl.common.interfaces import Scan, Vga
+from raycaster.rtl.common.records import Pixel
 from raycaster.rtl.span.list_player import list_player
 from raycaster.rtl.span.lists import ListEntry, entry_bits
+from raycaster.rtl.video.video_generator import video_generator
 
 COLUMNS, ROWS = 8, 4
 
@@ -45,3 +50,19 @@ def test_list_player(entries, pixels, doubling, clocks, leaf_of, random):
     leaf.expected.pop(leaf.cycle, None)
     leaf.check(settled=1)
     assert full > 0
+
+
+@pytest.mark.parametrize(("pixels", "doubling", "clocks"), [(1, 1, 1), (1, 2, 1), (1, 1, 2), (1, 3, 2), (2, 1, 1)])
+def test_the_monitor_of_these_tests(pixels, doubling, clocks, leaf_of):
+    """Its strobes are those of `video_generator`."""
+    screen = list_screen(COLUMNS, ROWS, doubling, clocks)
+    beam, line = Beam(screen, pixels), screen.horizontal
+    parts = {name: pixels * getattr(line, name) for name in ("front", "sync", "back")}
+    paired = replace(screen, horizontal=replace(line, **parts), pixels_per_clock=pixels)
+    ports = {"scan": Scan, "pixel": lambda: Pixel(8 * pixels), "vga": lambda: Vga(8 * pixels)}
+    leaf = leaf_of(video_generator, screen=paired, lead=beam.lead, **ports)
+    leaf.case({"reset": 1})
+    for _ in range(2 * beam.period):
+        leaf.case({"reset": 0}, named("scan", beam.scan()))
+        beam.clock(reset=False)
+    leaf.check(settled=1)
