@@ -8,7 +8,6 @@ from raycaster.hdl.signals import bit, signed, tied, unsigned
 from raycaster.rtl.common.by_axis import along_u, along_v, by_axis
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
-    CELL_BITS,
     column_bits,
     divisor_bits,
     eye_bits,
@@ -53,14 +52,14 @@ def cell_walker(
         config: the design, with patterns.
     """
     width, factor_bits, far_bits = column_bits(config), line_factor_bits(config), eye_bits(config)
-    edge_bits, value_bits, growth_bits = COORDINATE_BITS + 1, line_bits(config), divisor_bits(config)
+    limit_bits, value_bits, growth_bits = COORDINATE_BITS + 1, line_bits(config), divisor_bits(config)
     smallest = COORDINATE_BITS - PLACE_BITS
 
     state = Signal(WalkState.IDLE)
     finding, second, up, down, at_once, decides, crosses, rose = (bit() for _ in range(8))
     present, place = unsigned(PLACE_BITS), unsigned(PLACE_BITS)
     number = unsigned(PLACE_BITS + 1)
-    limit = unsigned(edge_bits)
+    limit = unsigned(limit_bits)
     whole_limit, offset, eye_w, to_plane, factor_1, factor_2 = (signed(factor_bits) for _ in range(6))
     difference = signed(factor_bits + 1)
     axis_u, axis_v, axis_w, axis_1 = (unsigned(AXIS_BITS) for _ in range(4))
@@ -96,10 +95,9 @@ def cell_walker(
     @always_comb
     def scale():
         limit.next = 0
-        if not finding:
-            for size in range(1 << CELL_BITS):
-                if grid.cell == size:
-                    limit.next = (number << (size + smallest)) % (1 << edge_bits)
+        for size in range(PLACE_BITS):
+            if (grid.cell == size) and not finding:
+                limit.next = (number << (size + smallest)) % (1 << limit_bits)
 
     @always_comb
     def extend():

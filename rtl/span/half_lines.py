@@ -106,13 +106,12 @@ def half_lines(
 
     @always(clk.posedge)
     def keep_signs():
-        if seeing and answer.valid:
-            for axis in range(3):
-                if answer.number == axis:
-                    fore_left.next[axis] = answer.left > 0
-                    fore_right.next[axis] = answer.right > 0
-                    aft_left.next[axis] = answer.left < 0
-                    aft_right.next[axis] = answer.right < 0
+        for axis in range(3):
+            if seeing and answer.valid and (answer.number == axis):
+                fore_left.next[axis] = answer.left > 0
+                fore_right.next[axis] = answer.right > 0
+                aft_left.next[axis] = answer.left < 0
+                aft_right.next[axis] = answer.right < 0
 
     # Where the slope is 0, each component is 0 or changes its sign within the chain.
     @always_comb
