@@ -34,7 +34,7 @@ DESIGNS = [
     span_config(**TINY, reflections=4, turn=True, materials=True, patterns=True, light=True),
 ]
 
-QUICK = 2
+QUICK = 1
 """Frames of each design, if slow tests are left out."""
 
 SCENES = {name: load_scene(path) for name, path in sorted(packaged_scenes().items())}
@@ -107,6 +107,7 @@ def check_frames(leaf, frames: Sequence[Frame], most: int | None = None) -> None
         assert not describe_difference(picture_of(rows, screen.columns), picture)
 
 
+@pytest.mark.slow_sets("exact-tiny48-u16-r32")
 @pytest.mark.parametrize("config", DESIGNS, ids=config_id)
 def test_span_unit(config, leaf_of, random):
     """Random, cornered and stiff worlds."""
