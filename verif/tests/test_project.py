@@ -53,11 +53,9 @@ MAY_IMPORT_IN_RTL = {
     "engine": ("common",),
     "cull": ("common", "engine"),
     "buffered": ("common", "video", "engine", "cull"),
-    "seed": ("common", "engine", "buffered"),
-    "exact": ("common", "engine", "buffered"),
-    "beam": ("common", "engine", "video"),
     "span": ("common", "engine"),
-    "engines.py": ("engine", "seed", "exact", "beam"),
+    **dict.fromkeys(ENGINES, ("common", "video", "engine", "buffered")),
+    "engines.py": ("engine", *ENGINES),
     "system": ("common", "dvi", "scene", "bus", "engines.py"),
 }
 """Other folders of rtl/, and the list of engines, that each of them there may import from."""
