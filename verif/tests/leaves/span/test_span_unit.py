@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import islice, pairwise
 
+import numpy as np
 import pytest
 from conftest import plant
 from span_vectors import Frame, any_frame, frame_bench, frame_inputs, scene_frame, span_config
@@ -206,3 +207,12 @@ def test_a_planted_fault_is_noticed(module, right, wrong, leaf_of, random):
     with pytest.raises(AssertionError):
         for _ in range(30):
             check_frames(leaf, [any_frame(random, config)])
+
+
+def test_an_empty_table_shows_the_background(leaf_of, random):
+    config = DESIGNS[-1]
+    leaf = unit_bench(leaf_of, config)
+    leaf.screen = config.screen_geometry
+    frame = any_frame(random, config)
+    table = replace(frame.table, enabled=np.zeros(len(frame.table), dtype=bool))
+    check_frames(leaf, [replace(frame, table=table)], most=3)
