@@ -152,17 +152,17 @@ class Surface:
     """The surface that is seen at a level, from the present column to the right."""
 
     weight: int
-    """Its weight in the picture."""
+    """The surface's weight in the picture."""
 
     colours: tuple[Vector, Vector]
     stop: int
     """The column after it."""
 
     kind: int = 0
-    """Of its pattern, as in `Rectangles`."""
+    """The pattern, as in `Rectangles`."""
 
     cells: list[Cells] = field(default_factory=list)
-    """Of the pattern, along u and v as far as it needs them."""
+    """The pattern's cells, along u and v as far as it needs them."""
 
     shadows: list[tuple[int, int]] = field(default_factory=list)
     """Columns in which a rectangle is between the surface and the light."""

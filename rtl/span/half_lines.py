@@ -113,7 +113,7 @@ def half_lines(
                 aft_left.next[axis] = answer.left < 0
                 aft_right.next[axis] = answer.right < 0
 
-    # Where the slope is 0, each component is 0 or changes its sign within the chain.
+    # In a column with a slope of 0, each component is 0 or changes its sign within the chain.
     @always_comb
     def see_vanishing():
         may_vanish.next = ((fore_left & fore_right) | (aft_left & aft_right)) == 0

@@ -83,7 +83,7 @@ def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configur
         query_2.word.next = query_1.word
         query_3.word.next = query_2.word
 
-    # A factor is negated instead of the values that it is multiplied by.
+    # A factor is negated, as it has fewer bits than the values.
     @always_comb
     def negate():
         opposite_1.next = -query_1.factor_1

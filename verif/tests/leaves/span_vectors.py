@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A span unit with a table of rectangles that draws row after row, and the frames that it is given."""
+"""A span unit with a table of rectangles that draws row after row, and frames for it."""
 
 from __future__ import annotations
 
@@ -267,8 +267,8 @@ def line_inputs(axes: Sequence[int], backs: Sequence[int], factors: Sequence[int
 def any_chain(
     random: np.random.Generator, config: Configuration, slope: Sequence[Line], camera: np.ndarray
 ) -> tuple[Chain, tuple[int, bool]]:
-    """Return a chain after some mirrors, all of which its rays meet one after the other, and the last one's axis and
-    sign, as `chain_inputs` takes them."""
+    """Return a chain whose rays meet some mirrors one after the other, and axis and sign of the last mirror, as
+    `chain_inputs` takes them."""
     columns = config.screen_geometry.columns
     start = int(random.choice([0, int(random.integers(columns))]))
     stop = int(random.choice([columns, start + 1, int(random.integers(start + 1, columns + 1))]))
