@@ -35,9 +35,17 @@ module system_bench #(
     );
 
     // The design is still in reset at the clock edge at which reset falls; the monitor's clock runs from the next on.
-    reg was_reset;
-    always @(posedge clk)
-        was_reset <= dut.reset;
+    // Before the first reset, which takes a clock to come, the outputs are those at power-up.
+    reg was_reset, powers_up;
+    initial begin
+        was_reset = 1'b1;
+        powers_up = 1'b1;
+    end
+    always @(posedge clk) begin
+        if (dut.reset)
+            powers_up <= 1'b0;
+        was_reset <= dut.reset || powers_up;
+    end
 
     line_sink #(
         .COLOUR_BITS(COLOUR_BITS),
