@@ -81,7 +81,7 @@ def test_traces_as_fractions_do(name, world, reflections):
     model, hit = MODELS[name]
     rng = np.random.default_rng([seed(), reflections])
     longest, patterned, ended, in_corners, shaded = 0, 0, 0, Counter(), Counter()
-    for _ in range(30):
+    for _ in range(40):
         table, camera, slopes = world(rng)
         if rng.random() < 0.6:
             table = random_looks(rng, table)
