@@ -683,12 +683,8 @@ class Expressions:
         """Return the bits of a slice, whose bounds may depend on loops' variables."""
         assert isinstance(node.slice, ast.Slice)
         lower, upper = node.slice.lower, node.slice.upper
-        names = {part.id for bound in (lower, upper) if bound for part in ast.walk(bound) if isinstance(part, ast.Name)}
-        names = {
-            name
-            for name in names
-            if self.constant(ast.Name(name, ast.Load(), obj=self._tree.symdict.get(name))) is None
-        }
+        parts = [part for bound in (lower, upper) if bound for part in ast.walk(bound)]
+        names = {part.id for part in parts if isinstance(part, ast.Name) and self.constant(part) is None}
         found = set()
         for start in (101, 211, 997):
             with self.assuming({name: start + 37 * place for place, name in enumerate(sorted(names))}):
