@@ -189,7 +189,7 @@ class Row:
     """A row that is drawn."""
 
     runs: list[tuple[int, Vector]] = field(default_factory=list)
-    """The column after each run, and its colour. Neighbours differ in colour."""
+    """The column after each run, and its colour. No run is empty, and neighbours differ in colour."""
 
     cycles: int = 0
     """Clock cycles from the start, which counts, to the row's end, if each run is taken at once."""
@@ -448,7 +448,10 @@ class Drawing:
         self.now += 1
 
     def run(self, end: int) -> None:
-        """Append a run up to a column, in the colour of all levels."""
+        """Append a run up to a column, in the colour of all levels.
+
+        The column may be the present one: the cell of a mirror's pattern may end where a span behind it does.
+        """
         shade = self.model.light.quarters if self.model.light else 0
         seen = [(surface.weight, surface.colour(shade)) for surface in self.shown]
         mixed = tuple(
@@ -456,6 +459,8 @@ class Drawing:
             for channel in range(3)
         )
         runs = self.result.runs
+        if end == (runs[-1][0] if runs else 0):
+            return
         if runs and runs[-1][1] == mixed:
             runs.pop()
         elif runs:

@@ -10,7 +10,9 @@ from raycaster.rtl.common.widths import RGB_BITS, column_bits
 
 @block
 def run_joiner(clk, reset, part, run, done, config: Configuration):
-    """Join neighbouring runs of one colour. The last run of a row ends at the number of columns.
+    """Join neighbouring runs of one colour, and drop those without columns.
+
+    The last run of a row ends at the number of columns.
 
     Args:
         clk: the clock.
@@ -22,27 +24,28 @@ def run_joiner(clk, reset, part, run, done, config: Configuration):
     """
     columns, width = config.screen_geometry.columns, column_bits(config)
 
-    held, last, same, vacant, leaves, taken = (bit() for _ in range(6))
+    held, last, same, empty, vacant, leaves, taken = (bit() for _ in range(7))
     held_end, colour = unsigned(width), unsigned(RGB_BITS)
 
     @always_comb
     def compare():
         same.next = part.colour == colour
+        empty.next = part.end == held_end
         last.next = held and (held_end == columns)
         vacant.next = run.ready or not run.valid
 
     # A held run leaves once it cannot become longer.
     @always_comb
     def see_leaving():
-        leaves.next = held and vacant and (last or (part.valid and not same))
+        leaves.next = held and vacant and (last or (part.valid and not (same or empty)))
 
     @always_comb
     def accept():
-        part.ready.next = (not last) and ((not held) or same or vacant)
+        part.ready.next = (not last) and ((not held) or same or empty or vacant)
 
     @always_comb
     def see_taken():
-        taken.next = part.valid and part.ready
+        taken.next = part.valid and part.ready and not empty
 
     @always(clk.posedge)
     def hold():
@@ -52,8 +55,14 @@ def run_joiner(clk, reset, part, run, done, config: Configuration):
             held.next = True
         elif leaves:
             held.next = False
-        if taken:
+        # A row begins at column 0.
+        if reset:
+            held_end.next = 0
+        elif taken:
             held_end.next = part.end
+        elif leaves:
+            held_end.next = 0
+        if taken:
             colour.next = part.colour
 
     @always(clk.posedge)

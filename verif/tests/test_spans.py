@@ -32,7 +32,10 @@ SCENES = {name: load_scene(path) for name, path in sorted(packaged_scenes().item
 def check(frame: Frame, screen: Screen) -> None:
     """Compare a frame's picture with the one of the golden model."""
     rows = list(frame.model(screen).rows(screen, frame.basis))
-    assert all(row.runs[-1][0] == screen.columns for row in rows)
+    for row in rows:
+        ends = [0, *(end for end, _ in row.runs)]
+        assert ends == sorted(set(ends)), "a run is empty"
+        assert ends[-1] == screen.columns
     assert not describe_difference(picture_of(rows, screen.columns), frame.picture(screen)), frame
 
 

@@ -59,14 +59,15 @@ def test_painter(patterns, reflections, leaf_of, random):
 
 @pytest.mark.parametrize("patience", [0, 0.3, 0.8])
 def test_run_joiner(patience, leaf_of, random):
-    """Runs of few colours; each side waits at times, and nothing that waits changes."""
+    """Runs of few colours, some without columns; each side waits at times, and nothing that waits changes."""
     config = span_config(screen="tiny")
     leaf = leaf_of(run_joiner, config, part=lambda: Run(config), run=lambda: Run(config))
     leaf.case({"reset": 1, "part_valid": 0})
     rows = []
     for _ in range(12):
         ends = sorted({*random.integers(1, 64, int(random.integers(20))).tolist(), 64})
-        rows.append([(end, int(random.integers(1, 4))) for end in ends])
+        again = random.choice([0, *ends[:-1]], int(random.integers(6))).tolist()
+        rows.append([(end, int(random.integers(1, 4))) for end in sorted(ends + again)])
     parts = [part for row in rows for part in row]
     # A model of both registers says when each part is taken.
     held = shown = None
@@ -78,8 +79,9 @@ def test_run_joiner(patience, leaf_of, random):
         last = held is not None and held[0] == 64
         vacant = ready or shown is None
         same = held is not None and held[1] == part[1]
-        leaves = held is not None and vacant and (last or (offer and not same))
-        taken = offer and not last and (held is None or same or vacant)
+        empty = part[0] == (held[0] if held else 0)
+        leaves = held is not None and vacant and (last or (offer and not same and not empty))
+        taken = offer and not last and (held is None or same or empty or vacant)
         leaf.case(
             {"reset": 0, "part_valid": int(offer), "part_end": part[0], "part_colour": part[1], "run_ready": ready},
             {"run_valid": int(shown is not None), "done": done},
@@ -94,11 +96,13 @@ def test_run_joiner(patience, leaf_of, random):
         if leaves:
             shown, held = held, None
         if taken:
-            held, place = part, place + 1
+            held, place = held if empty else part, place + 1
     wanted = []
     for row in rows:
         merged = []
         for end, colour in row:
+            if end == (merged[-1][0] if merged else 0):
+                continue
             if merged and merged[-1][1] == colour:
                 merged.pop()
             merged.append((end, colour))

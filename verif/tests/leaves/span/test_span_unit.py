@@ -102,6 +102,7 @@ def check_frames(leaf, frames: Sequence[Frame], most: int | None = None) -> None
         for number, (row, expected) in enumerate(zip(rows, wanted, strict=False)):
             assert (row.runs, row.cycles) == (expected.runs, expected.cycles), f"row {number}"
             assert row.taken == expected.taken, f"row {number}"
+            assert all(one < other for one, other in pairwise([0, *(end for end, _ in row.runs)]))
             assert all(one != other for (_, one), (_, other) in pairwise(row.runs))
         assert len(rows) == len(wanted)
         picture = frame.picture(replace(screen, rows=len(rows)))
