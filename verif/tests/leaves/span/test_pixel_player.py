@@ -12,7 +12,7 @@ from raycaster.rtl.span.pixel_player import pixel_player
 def test_pixel_player(columns, doubling, clocks, leaf_of, random):
     leaf = leaf_of(pixel_player, head=lambda: ListEntry(columns, PIXEL_BITS), pixel=PIXEL_BITS)
     beam, playing, row, pixels, reads = Beam(list_screen(columns, 3, doubling, clocks)), 0, [], [], 0
-    for cycle in range(leaf.some(30) * beam.period // 6):
+    for cycle in range(leaf.some(60) * beam.period // 6):
         scan = beam.scan()
         visible = scan["visible_line"]
         if not visible:

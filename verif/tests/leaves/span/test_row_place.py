@@ -27,7 +27,7 @@ def test_row_place(pixels, doubling, clocks, leaf_of, random):
     row = length = first = view_run = playing = visible = place = 0
     played, coming, leaving, restarts = iter(()), {}, set(), {}
     leaf.case({"reset": 1})
-    for _ in range(leaf.some(20) * beam.period):
+    for _ in range(leaf.some(60) * beam.period):
         cycle, scan = leaf.cycle, beam.scan()
         reset = int(random.random() < 0.03 / beam.period)
         if cycle in coming:
