@@ -92,7 +92,7 @@ class Bench(Leaf):
             parameter = parameters[name]
             if name == "config":
                 return config
-            if name in ("control", "unit"):
+            if name in ("control", "unit") and config is not None:
                 return getattr(engine_of(config), name)
             if parameter.annotation is not parameter.empty or parameter.default is not parameter.empty:
                 return given[name]
