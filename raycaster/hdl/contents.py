@@ -204,7 +204,8 @@ class Contents:
                 reason = "reads constants only, and Verilog would never run it; compute their values outside of it"
                 self._refuse(f"{part.name} {reason}", part.name)
             edges = [getattr(edge, "sig", edge) for edge in getattr(part, "senslist", ())]
-            if len({*map(id, edges)}) < len(edges):
+            edged = [id(edge.sig) for edge in getattr(part, "senslist", ()) if not isinstance(edge, SignalType)]
+            if len({*edged}) < len(edged):
                 reason = "waits for both edges of a signal, and no register does; write a process for each edge"
                 self._refuse(f"{part.name} {reason}", part.name)
             for signal in [*(part.sigdict[name] for name in sorted(part.inputs)), *edges, getattr(part, "reset", None)]:
@@ -369,13 +370,11 @@ class Contents:
 
     def _check(self) -> None:
         """Refuse signals without a driver, reader or width, and lists that have no value in Verilog."""
-        ports = {id(one): one for name, one in self.arriving.items() if any(name == port.name for port in self.ports)}
-        for signal in (*ports.values(), *self.signals):
+        for port in self.ports:
+            self._check_width(port.name, self.arriving[port.name])
+        for signal in self.signals:
             name = self.names[id(signal)]
-            if not len(signal):
-                self._refuse(f"{name} has no width; write intbv(0)[8:] or intbv(0, min=-8, max=8)", name)
-            if id(signal) in ports:
-                continue
+            self._check_width(name, signal)
             if id(signal) not in self.driven and not isinstance(signal, (Tied, Constant, ConcatSignal)):
                 if id(signal) in self._design.driven:
                     self._refuse(f"{name} is driven by another block; pass it as an argument", name)
@@ -389,6 +388,10 @@ class Contents:
                 self._refuse(f"a process indexes {name}, {remedy}", name)
             if len({(len(one), is_signed(one)) for one in memory}) > 1:
                 self._refuse(f"a process indexes {name}, whose signals differ in width or sign", name)
+
+    def _check_width(self, name: str, signal: SignalType) -> None:
+        if not len(signal):
+            self._refuse(f"{name} has no width; write intbv(0)[8:] or intbv(0, min=-8, max=8)", name)
 
     def _refuse(self, reason: str, name: str) -> NoReturn:
         raise refusal(self.block, reason, name)

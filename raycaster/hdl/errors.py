@@ -26,8 +26,8 @@ REWORDED = {
     r"Return type mismatch": r"the results have different types; return values of one type",
     r"Returned nr of bits mismatch": r"the results have different widths; return values of one width",
     r"Unsupported attribute: (\w+)": r"Verilog has no attribute \1; find its value outside of the process",
-    r"Not supported: non-boolean argument in logical operator": r"and, or and not have words here, of which Python "
-    r"returns one; compare each with != 0",
+    r"Not supported: non-boolean argument in logical operator": r"and, or, not: an operand is a word, not a bit; "
+    r"compare it with != 0",
     r"Not supported: true division.*": r"Verilog has no true division; write //",
     r"Not supported: (.*)": r"Verilog has no \1; write it otherwise",
     r"sensitivity list is empty": r"the process reads no signal, so nothing would run it; use tied()",

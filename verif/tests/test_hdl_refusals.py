@@ -113,7 +113,7 @@ def process(statements: str) -> str:
                     "match a[0]:\n    case True:\n        result.next = a\n    case _:\n        result.next = b",
                     "a signal never is True, even if it equals it; write case 1 and case 0",
                 ),
-                ("result.next = a and b", "and, or and not have words here, of which Python returns one"),
+                ("result.next = a and b", "and, or, not: an operand is a word, not a bit; compare it with != 0"),
                 ("result.next = 2 ** index", "2 ** index: Verilog has no such operator here"),
             )
         ),
@@ -272,6 +272,11 @@ def test_other_wrong_forms_are_refused(body, reason, tmp_path):
                 "if a == 3:\n    print('one\\r\\x0c\\u2028two')\nresult.next = a",
                 "'''A\x0ctext\u2028of\rlines.'''\nresult.next = a",
             )
+        ),
+        (
+            "@block\ndef inner(a, b, result):\n    @always_comb\n    def go():\n        result.next = a ^ (b >> 1)\n"
+            "    return go\none = inner(a, a, result)\n",
+            2,
         ),
     ],
 )
