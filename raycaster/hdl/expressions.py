@@ -136,12 +136,9 @@ class Expressions:
                 return ast.unparse(node)
             case ast.IfExp():
                 return self._itself(node.body) or self._itself(node.orelse)
-            case ast.Call() if (tree := _tree(node)) is not None:
-                inner = Expressions(
-                    tree, self._function_name, dict(zip(tree.argnames, self.arguments(node), strict=True))
-                )
-                returns = [one.value for one in ast.walk(tree) if isinstance(one, ast.Return) and one.value is not None]
-                return ast.unparse(node) if any(map(inner._itself, returns)) else ""
+            case ast.Call() if _tree(node) is not None:
+                inner, results = self._results(node)
+                return ast.unparse(node) if any(map(inner._itself, results)) else ""
         return ""
 
     @contextmanager
@@ -390,12 +387,17 @@ class Expressions:
 
     def _returned(self, node: ast.Call) -> Range:
         """Return the range of a function's result."""
+        known = _tree(node).returnObj
+        inner, results = self._results(node)
+        if not results or not isinstance(known, int):
+            return _all_of(*_shape(known))
+        return functools.reduce(_either, map(inner.range, results))
+
+    def _results(self, node: ast.Call) -> tuple[Expressions, list[ast.expr]]:
+        """Return the expressions of a function, with the ranges of this call's arguments, and those that it returns."""
         tree = _tree(node)
         inner = Expressions(tree, self._function_name, dict(zip(tree.argnames, self.arguments(node), strict=True)))
-        returns = [one.value for one in ast.walk(tree) if isinstance(one, ast.Return) and one.value is not None]
-        if not returns or not isinstance(tree.returnObj, int):
-            return _all_of(*_shape(tree.returnObj))
-        return functools.reduce(_either, map(inner.range, returns))
+        return inner, [one.value for one in ast.walk(tree) if isinstance(one, ast.Return) and one.value is not None]
 
     def arguments(self, node: ast.Call) -> list[Range]:
         """Return the ranges of a call's arguments."""

@@ -127,7 +127,7 @@ def _add_inputs(tree: Any) -> None:
     """Add to what a process or a function reads, as MyHDL does not, the arguments of calls, and what functions read."""
     calls: list[Any] = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and hasattr(node, "tree")]
     for call in calls:
-        names = {node.id for argument in call.args for node in ast.walk(argument) if isinstance(node, ast.Name)}
+        names = set().union(*map(_names, call.args))
         _add_inputs(call.tree)
         tree.inputs |= names & {*tree.sigdict}
         for name in signals_read_around(call.tree):

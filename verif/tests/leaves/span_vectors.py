@@ -46,6 +46,38 @@ NOTHING = Rectangles(np.zeros((0, 2, 3), np.int64), np.zeros((0, 3), np.uint8), 
 
 
 @block
+def stored_rects(clk, store, number, stored, usable, rects, config: Configuration):
+    """Keep rectangles, and present the one that is fetched.
+
+    Args:
+        clk: the clock.
+        store: strobe; stores a rectangle.
+        number: unsigned, `index_bits` bits; read with store.
+        stored: `Rect`; read with store.
+        usable: unsigned, a bit per rectangle.
+        rects: `Rects`; index and fetch are read.
+        config: the design.
+    """
+    memory = [unsigned(len(stored.word)) for _ in range(1 << index_bits(config))]
+
+    @always_comb
+    def show():
+        rects.usable.next = usable
+
+    @always(clk.posedge)
+    def keep():
+        if store:
+            memory[number].next = stored.word
+
+    @always(clk.posedge)
+    def fetch():
+        if rects.fetch:
+            rects.rect.word.next = memory[rects.index]
+
+    return instances()
+
+
+@block
 def frame_bench(
     clk, reset, store, number, stored, usable, first_row, camera, picture, run, done, config: Configuration
 ):
@@ -66,7 +98,7 @@ def frame_bench(
         config: the design.
     """
     rects, slope = Rects(config), Vector(span_slope_bits(config))
-    memory = [unsigned(len(stored.word)) for _ in range(1 << index_bits(config))]
+    table = stored_rects(clk=clk, store=store, number=number, stored=stored, usable=usable, rects=rects, config=config)
     begun, begins, start = bit(), bit(), bit()
     camera_slope = row_slope(clk=clk, first_row=first_row, next_row=start, camera=camera, slope=slope, config=config)
     unit = span_unit(
@@ -82,17 +114,6 @@ def frame_bench(
     @always_comb
     def see_start():
         start.next = begins or done
-        rects.usable.next = usable
-
-    @always(clk.posedge)
-    def keep():
-        if store:
-            memory[number].next = stored.word
-
-    @always(clk.posedge)
-    def fetch():
-        if rects.fetch:
-            rects.rect.word.next = memory[rects.index]
 
     return instances()
 
@@ -164,7 +185,9 @@ def chain_bench(
     set_up_asks, sweep_asks = Asks(config), Asks(config)
     no_corner_asks, no_surface_asks = (Asks(config, asks=False, divides=False) for _ in range(2))
     never = tied(0, 1)
-    memory = [unsigned(len(stored.word)) for _ in range(1 << index_bits(config))]
+    rectangles = stored_rects(
+        clk=clk, store=store, number=number, stored=stored, usable=usable, rects=rects, config=config
+    )  # fmt: skip
     known, put_number, putting = unsigned(count_bits(config)), unsigned(count_bits(config)), bit()
     read, place, level = bit(), unsigned(index_bits(config)), tied(0, level_bits(config))
     finder = set_up(
@@ -200,20 +223,6 @@ def chain_bench(
             known.next = 0
         elif give:
             known.next = known + 1
-
-    @always_comb
-    def show_usable():
-        rects.usable.next = usable
-
-    @always(clk.posedge)
-    def keep():
-        if store:
-            memory[number].next = stored.word
-
-    @always(clk.posedge)
-    def fetch():
-        if rects.fetch:
-            rects.rect.word.next = memory[rects.index]
 
     return instances()
 
