@@ -287,7 +287,7 @@ class Drawing:
         self.division = (model.columns - 1).bit_length() + 1
         """Cycles of a division."""
         self.shown: list[Surface] = []
-        """What is seen at each level, up to the present one."""
+        """Surfaces seen at each level, up to the present one."""
 
     def draw(self) -> Row:
         """Draw the row."""

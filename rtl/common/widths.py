@@ -173,7 +173,7 @@ def step_bits(config: Configuration) -> int:
 
 
 def operand_bits(config: Configuration) -> int:
-    """Width of a component of a slope in a half-line, with sign: the screen's, or that from the light to a surface."""
+    """Width of a slope component in a half-line, with sign: of a ray, or from the light to a surface."""
     return max(span_slope_bits(config), (light_slope_bits(config) + 1) if config.light else 0)
 
 

@@ -28,7 +28,7 @@ class ListEntry(Record):
 
 
 class FrameEvents(Interface):
-    """What becomes of frames: strobes, except time.
+    """Events in the life of a frame: strobes, except time.
 
     Attributes:
         drawn: a frame is whole.

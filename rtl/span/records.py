@@ -69,7 +69,7 @@ class Entry(Record):
 
 
 class Frame(Record):
-    """What a chain leaves behind for the time after the chains of its span: the chain, and the place of its sweep.
+    """State of a chain, kept while the chains behind its mirror are drawn: the chain, and the place of its sweep.
 
     part_stop: the end of the part of the span that is being drawn; stop: the span's end; heir, inherited: the entry
     that is seen next, and whether there is one; count: number of the chain's entries.

@@ -14,7 +14,7 @@ def row_slope(clk, first_row, next_row, camera, slope, config: Configuration):
     """Compute the slope of column 0 of a row, for one row after the other.
 
     It is view distance * forward - centre column * right + (horizon row - row) * up, with the basis of the camera; if
-    it does not turn, with 1 in place of 256: (view distance, -centre column, horizon row - row).
+    it does not turn, that divided by 256: (view distance, -centre column, horizon row - row).
 
     Args:
         clk: the clock.

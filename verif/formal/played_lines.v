@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The monitor's side of the lists compared with a reference that has the whole list at hand: which entry each pixel of
-// each line is of. A run ends with the column before its end, and the next run is the next entry's. The first row
+// Compares the monitor's side of the lists with a reference that sees the whole list: the entry that each pixel of each
+// line shows. A run ends with the column before its end, and the next run is the next entry's. The first row
 // begins with the list's first entry, each further row with the entry after the row above, and all lines of a row with
 // the same entry. So a row whose last entry ends at the number of columns is shown to its end, and not beyond.
 //

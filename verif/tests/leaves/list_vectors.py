@@ -169,7 +169,7 @@ class Collector:
     rows_left: int = 0
     taken: list[Run] = field(default_factory=list)
     written: tuple[int, Run, bool] | None = None
-    """What is written in this cycle: place, run, and whether it is the frame's last."""
+    """Entry that is written in this cycle: its place, its run, and True if it is the frame's last."""
 
     @property
     def turn(self) -> int:

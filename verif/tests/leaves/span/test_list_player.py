@@ -54,7 +54,7 @@ def test_list_player(entries, pixels, doubling, clocks, leaf_of, random):
 
 @pytest.mark.parametrize(("pixels", "doubling", "clocks"), [(1, 1, 1), (1, 2, 1), (1, 1, 2), (1, 3, 2), (2, 1, 1)])
 def test_the_monitor_of_these_tests(pixels, doubling, clocks, leaf_of):
-    """Its strobes are those of `video_generator`."""
+    """The monitor of these tests has the strobes of `video_generator`."""
     screen = list_screen(COLUMNS, ROWS, doubling, clocks)
     beam, line = Beam(screen, pixels), screen.horizontal
     parts = {name: pixels * getattr(line, name) for name in ("front", "sync", "back")}
