@@ -5,7 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from raycaster.golden.spans import Row
+from raycaster.configuration import Configuration
+from raycaster.golden.spans import Row, SpanModel
+from raycaster.scene import Scene
 
 FIRST_START = 4
 """Cycles from the StartScreen at which a frame begins to its first row's start, if the units are ready."""
@@ -55,3 +57,14 @@ def frame_cycles(rows: Iterable[Row], columns: int, units: int = 1, places: int 
             fetches.append(fetch)
             takes.append(last)
     return last + 1
+
+
+def scene_cycles(scene: Scene, config: Configuration, reflections: int | None = None) -> int:
+    """Return the cycles of a design's frame of a scene, with its own reflections if none are given.
+
+    Several units get a copy of the table first, and have queues for two rows.
+    """
+    screen, units = config.screen_geometry, config.units
+    rows = SpanModel.of_scene(scene, screen, reflections).rows(screen, scene.camera.basis)
+    first = FIRST_START + (config.rectangles if units > 1 else 0)
+    return frame_cycles(rows, screen.columns, units, 2 * screen.columns, first)

@@ -82,6 +82,7 @@ class Facts:
         lacks: options of `FEATURES` that it refuses, each with the reason.
         divides: True if it forms quotients, which have fraction bits and are rounded.
         line_buffered: True if units fill a line buffer ahead of the monitor, group by group.
+        whole_frames: True if units draw whole frames into lists of runs, of which one is shown.
     """
 
     name: str
@@ -95,6 +96,7 @@ class Facts:
     lacks: Mapping[str, str] = field(default_factory=dict)
     divides: bool = False
     line_buffered: bool = True
+    whole_frames: bool = False
 
     @property
     def features(self) -> tuple[str, ...]:
@@ -137,6 +139,14 @@ class Options:
     fraction_bits: Whole = Field(0, ge=0, le=8, description="fraction bits of origins, planes and quotients")
     rounding: Rounding = Field("truncate", description="rounding of quotients: truncate or nearest")
     divider_bits: Whole | Literal["auto"] = Field("auto", description="quotient bits per cycle: auto, 1, 2 or 3")
+    list: Whole | None = Field(
+        None,
+        ge=0,
+        le=1 << 20,
+        multiple_of=2,
+        description="runs of one colour that each of the two lists holds, in which frames are drawn (span); by default "
+        "120 per row, or a run per column",
+    )
     colour_bits: Whole = Field(8, ge=1, le=CHANNEL_BITS, description="bits per colour channel on the VGA output")
     screen: Literal["vga", "tiny", "play"] = Field(
         "vga",
@@ -173,6 +183,7 @@ class Configuration(Options):
 
     Attributes:
         units: number of parallel ray units; with the beam engine, one per pixel of a clock.
+        list: runs that each of the two lists of frames holds; 0 if the engine has no lists.
         divider_bits: quotient bits per cycle; 0 if the engine does not divide, nor are there fraction bits then.
         culling: True if units abandon early the rectangles that no ray of a group can hit. This saves cycles in most
             groups but none in the worst case, so the row budget ignores it.
@@ -182,6 +193,7 @@ class Configuration(Options):
     units: int
     rows: int
     scale: int
+    list: int
     divider_bits: int
     culling: bool
     turn: bool
@@ -199,6 +211,11 @@ class Configuration(Options):
     def table(self) -> int:
         """Number of entries in the rectangle table that software writes; 0 if the rectangles are fixed."""
         return 0 if self.fixed else self.rectangles
+
+    @property
+    def map(self) -> tuple[int, bool]:
+        """What decides the register map: the entries of the rectangle table, and True with lists of frames."""
+        return self.table, self.facts.whole_frames
 
     @property
     def passes(self) -> tuple[int, ...]:
@@ -263,6 +280,8 @@ class Configuration(Options):
         rounding = "n" if self.rounding == "nearest" else "t"
         quotients = f"-f{self.fraction_bits}{rounding}-d{self.divider_bits}" if self.facts.divides else ""
         scale = f"-s{self.scale}" if not self.facts.line_buffered else ""
+        pairs = "-pairs" if self.pixels > 1 and self.facts.whole_frames else ""  # other engines have a unit for each
+        entries = f"{pairs}-l{self.list}" if self.list else ""
         fixed = f"-{self.fixed.name}" if self.fixed else ""
         # Defaults are left out of the name.
         culling = "" if self.fixed or self.culling == self.facts.divides else f"-k{int(self.culling)}"
@@ -270,7 +289,7 @@ class Configuration(Options):
         bus = "" if self.bus == OWN else f"-{self.bus}"
         return (
             f"{self.engine}-{self.screen}{self.rows}{scale}-u{self.units}-r{self.rectangles}-m{self.reflections}"
-            f"{quotients}-c{self.colour_bits}{culling}{features}{bus}{fixed}"
+            f"{quotients}{entries}-c{self.colour_bits}{culling}{features}{bus}{fixed}"
         )
 
 

@@ -66,7 +66,7 @@ def scene_words(scene: Scene, config: Configuration, reflections: int | None = N
         config: see `scene_fields`.
         reflections: number of reflections, instead of the scene's own.
     """
-    registers = register_map(config.table)
+    registers = register_map(*config.map)
     bounces = scene.reflections if reflections is None else reflections
     start = ("control", {"run": 1, "commit": 1, "reflections": bounces})
     return [

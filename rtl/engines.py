@@ -8,8 +8,9 @@ from raycaster.rtl.beam.engine import BEAM
 from raycaster.rtl.engine.engine import Engine
 from raycaster.rtl.exact.engine import EXACT
 from raycaster.rtl.seed.engine import SEED
+from raycaster.rtl.span.engine import SPAN
 
-ENGINES: Mapping[str, Engine] = {one.facts.name: one for one in (SEED, EXACT, BEAM)}
+ENGINES: Mapping[str, Engine] = {one.facts.name: one for one in (SEED, EXACT, BEAM, SPAN)}
 """Engines by name; the first one is the default."""
 
 

@@ -60,7 +60,7 @@ class RayCaster(LiteXModule):
             raise UserError(f"pixels: LiteX's video has 1 per clock, not {config.pixels}")
         for path in write_verilog(config, directory, PREFIX):
             platform.add_source(str(path), "verilog")
-        words = address_bits(config.table)
+        words = address_bits(*config.map)
         self.size = 4 << words
         self.ev = EventManager()
         self.ev.frame = EventSourceLevel(description="A frame has begun; cleared in the ray tracer's irq_pending.")
@@ -140,7 +140,7 @@ def add_ray_caster(
     soc.bus.add_slave(name, module.bus, SoCRegion(origin=origin, size=module.size, mode="rw", cached=False))
     if soc.irq.enabled:
         soc.irq.add(name, use_loc_if_exists=True)
-    for path, register in register_map(config.table).items():
+    for path, register in register_map(*config.map).items():
         constant = path.replace("].", "_").replace("[", "_").upper()
         soc.add_constant(f"{name}_{constant}_OFFSET", 4 * register.address)
     return module

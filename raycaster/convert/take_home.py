@@ -85,7 +85,7 @@ def _bench(config: Configuration, top: str) -> str:
     """Return the bench, whose parameters have the values of the design."""
     horizontal = config.screen_geometry.beats
     parameters = {
-        "ADDRESS_BITS": address_bits(config.table),
+        "ADDRESS_BITS": address_bits(*config.map),
         "COLOUR_BITS": config.colour_bits * config.pixels,
         "H_TOTAL": horizontal.total,
         "H_SYNC": horizontal.sync,

@@ -64,6 +64,7 @@ def decided(options: Options) -> Configuration:
         "rectangles": len(fixed.rectangles) if fixed else options.rectangles,
         "rows": rows,
         "scale": scale,
+        "list": 0,
         "divider_bits": 0,
         "culling": culls if options.culling is None else options.culling,
         **{feature: bool(getattr(options, feature)) for feature in FEATURES},
@@ -71,7 +72,7 @@ def decided(options: Options) -> Configuration:
     }
     config = Configuration(**{**vars(options), **decisions})
     columns = config.screen_geometry.columns
-    if columns % config.units:
+    if columns % config.units and not engine.facts.whole_frames:
         divisors = ", ".join(str(n) for n in range(1, columns + 1) if columns % n == 0)
         raise ValueError(f"units: {config.units} does not divide the {columns} columns; choose one of {divisors}")
     config = engine.sized(config, options)

@@ -81,7 +81,7 @@ class Comments:
                 port = f"{argument}_{attribute}"
                 add(port, meaning)
                 add(f"{port}_word", meaning)
-                add_layout(port, getattr(value, attribute))
+                add_layout(port, getattr(value, attribute, None))  # some designs may lack it
         return comments
 
     def _in_verilog(self, text: str) -> str:

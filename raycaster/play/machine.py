@@ -158,7 +158,7 @@ def machine_sources(config: Configuration, build: Path = BUILD, *, processor: bo
         "-O3", "-fno-table", "--x-assign", "fast", "--x-initial", "fast", "--no-timing", "--noassert",
         "-Wno-lint", "-Wno-style",
         *((f"-DSYSTEM={files[-1].stem}",) if processor else ()), f"-GBUTTONS={len(BUTTON_NAMES)}",
-        f"-GCOLOUR_BITS={config.colour_bits * config.pixels}", f"-GADDRESS_BITS={address_bits(config.table)}",
+        f"-GCOLOUR_BITS={config.colour_bits * config.pixels}", f"-GADDRESS_BITS={address_bits(*config.map)}",
     )  # fmt: skip
     defines = (
         f"-DVS_ACTIVE={int(screen.vertical.active_high)}",

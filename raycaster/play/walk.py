@@ -108,7 +108,7 @@ class Walker:
 
     def writes(self) -> list[tuple[int, int]]:
         """List the word addresses and words that update the camera and the light; the last one commits."""
-        registers, camera = register_map(self._config.table), self.camera
+        registers, camera = register_map(*self._config.map), self.camera
         fields = [("camera", dict(zip("xyz", camera.position, strict=True)))]
         if self._config.turn:
             fields += basis_fields(camera.basis)

@@ -16,7 +16,7 @@ def bus_files(configuration: Configuration) -> dict[str, str]:
     names with the prefix `seen_`.
     """
     prefix, bridge = BUSES[configuration.bus].port, BRIDGES[configuration.bus]
-    port = bridge.interface(address_bits(configuration.table))
+    port = bridge.interface(address_bits(*configuration.map))
     signals, seen, ports = [], [], []
     for attribute, signal in vars(port).items():
         name, width = f"{prefix}_{attribute}", len(signal)

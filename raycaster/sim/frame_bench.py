@@ -11,6 +11,7 @@ import cocotb
 from cocotb.handle import HierarchyObject
 from PIL import Image
 
+from raycaster.golden.frames import scene_cycles
 from raycaster.golden.picture import count_wrong, diff_picture, first_wrong
 from raycaster.sim.harness import Harness
 from raycaster.sim.monitor import VideoError
@@ -44,6 +45,9 @@ async def one_frame(bench: HierarchyObject) -> None:
     frame_cycles = int(harness.bench.busy_cycles.value)
     cycles = await bus.read("cycles")
     status = await bus.read("status")
+    if harness.configuration.facts.whole_frames:
+        cycles = dict.fromkeys(cycles, 0)
+        frame_cycles = (await bus.read("frames.cycles"))["cycles"]
     seconds = time.perf_counter() - started
     harness.monitor.check_pins()
 
@@ -69,4 +73,7 @@ async def one_frame(bench: HierarchyObject) -> None:
     }
     (output / "result.json").write_text(json.dumps(result, indent=2) + "\n")
     harness.expect_picture(frame, golden, "frame")
+    if harness.configuration.facts.whole_frames:
+        expected = scene_cycles(scene, harness.configuration, reflections)
+        assert frame_cycles == expected, f"the frame took {frame_cycles} cycles, and {expected} in golden/frames.py"
     assert not status["bad_rectangle"], "the scene's rectangles were reported as bad"

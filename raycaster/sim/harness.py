@@ -96,6 +96,14 @@ class Harness(Viewer):
         """Write a scene and commit it."""
         await self.bus.load_scene(scene)
         await self.bus.commit(reflections=reflections)
+        if self.configuration.facts.whole_frames:
+            await self.wait_for_frame()
+
+    async def wait_for_frame(self) -> None:
+        """Wait until the frame of the committed scene is whole, so that the next StartScreen shows it."""
+        while (await self.bus.read("control"))["commit"] or (await self.bus.read("status"))["busy"]:
+            await self.monitor.line()
+        self.monitor.forget()
 
     async def reset(self) -> None:
         """Reset the design; returns at the first clock edge at which reset is low."""

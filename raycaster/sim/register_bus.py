@@ -15,8 +15,8 @@ class RegisterBus(ABC):
     """Reads and writes registers of a design; when an access returns, the next may start at once."""
 
     def __init__(self, configuration: Configuration):
-        self.registers: dict[str, Register] = register_map(configuration.table)
-        self.address_bits = address_bits(configuration.table)
+        self.registers: dict[str, Register] = register_map(*configuration.map)
+        self.address_bits = address_bits(*configuration.map)
         self._configuration = configuration
 
     @abstractmethod

@@ -71,7 +71,7 @@ COLUMNS: Mapping[str, str] = {
     "wrong": "pixels that differ from the golden model",
     "vs\nexact": "pixels that differ from the exact picture, for the engine that rounds",
     "frame": "clock cycles to render it",
-    "row\nused": "share of the available clock cycles that the slowest row took",
+    "row\nused": "share of the available clock cycles that the slowest row or, with the span engine, the frame took",
     "group\nused": "the same for the slowest group of columns",
     "alone\nHz": "frames per second of the renderer by itself",
     "time\ns": "seconds in the simulator",
@@ -393,15 +393,19 @@ def _cells(outcome: Outcome) -> list[str | Text]:
     if result is None:
         return [configuration.engine, Text("failed", "red")] + (len(COLUMNS) - 2) * [""]
     row, group, wrong = result["worst_row_cycles"], result["worst_group_cycles"], result["wrong_vs_golden"]
-    budget = configuration.group_budget
+    screen, frame = configuration.screen_geometry, result["frame_cycles"]
+    shares = [f"{row / screen.row_cycles:.0%}", f"{group / configuration.group_budget:.0%}"]
+    alone = f"{_frames_per_second(configuration, row):.0f}" if row else ""
+    if configuration.facts.whole_frames:
+        shares, alone = [f"{frame / screen.frame_cycles:.0%}", ""], f"{screen.clock_hz / frame:.0f}" if frame else ""
     return [
         configuration.engine,
         Text(str(wrong), "red" if wrong else ""),
         str(result["wrong_vs_exact"]) if configuration.facts.divides else "",
-        str(result["frame_cycles"] or ""),
-        f"{row / configuration.screen_geometry.row_cycles:.0%}",
-        Text("underrun", "red") if result["underrun"] else f"{group / budget:.0%}",
-        f"{_frames_per_second(configuration, row):.0f}" if row else "",
+        str(frame or ""),
+        shares[0],
+        Text("underrun", "red") if result["underrun"] else shares[1],
+        alone,
         f"{result['sim_seconds']:.2f}",
     ]
 

@@ -162,7 +162,7 @@ class Bench:
         """Return the parameters of its Verilog, for a design."""
         screen = configuration.screen_geometry
         parameters = {
-            "ADDRESS_BITS": address_bits(configuration.table),
+            "ADDRESS_BITS": address_bits(*configuration.map),
             "COLOUR_BITS": configuration.colour_bits,
             "H_TOTAL": screen.horizontal.total,
             "HS_ACTIVE": int(screen.horizontal.active_high),

@@ -11,8 +11,8 @@ from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration, Facts, Options
 from raycaster.rtl.beam.beam_renderer import beam_renderer
 from raycaster.rtl.beam.latencies import blanking_left
-from raycaster.rtl.engine.engine import Engine
-from raycaster.screens import BEAM_SCREENS, Screen
+from raycaster.rtl.engine.engine import Engine, check_pairs
+from raycaster.screens import BEAM_SCREENS
 
 
 class Beam(Engine):
@@ -22,10 +22,6 @@ class Beam(Engine):
     def renderer(self) -> Callable[..., Any]:
         """`beam_renderer`."""
         return beam_renderer
-
-    def scales(self, screen: Screen) -> tuple[int, ...]:
-        """Return the scales for which the monitor has pixels; first the one with a ray per pixel."""
-        return tuple(sorted(screen.scales, key=lambda scale: scale != screen.doubling))
 
     def refuse(self, options: Options) -> None:
         """Refuse culling, and a number of units that is not that of the lanes."""
@@ -41,7 +37,7 @@ class Beam(Engine):
     def sized(self, config: Configuration, options: Options) -> Configuration:
         """Take one lane per pixel of a clock."""
         if config.pixels > 1:
-            self._check_pairs(config)
+            check_pairs(config)
         return replace(config, units=config.pixels)
 
     def describe(self, config: Configuration) -> str:
@@ -65,22 +61,6 @@ class Beam(Engine):
             f"rectangles: with {config.rectangles} of them, {config.reflections} reflections{turning}{paired}, the "
             f"beam engine is {-left} cycles short of a line's blanking on this screen; {' or '.join(ways)}"
         )
-
-    @staticmethod
-    def _check_pairs(config: Configuration) -> None:
-        """Refuse two pixels per clock unless they are neighbouring columns and all sync edges are between clocks."""
-        screen = config.whole_screen
-        if screen.doubling != 1:
-            finest = config.scale * screen.doubling
-            raise ValueError(
-                f"pixels: 2 per clock need one column per pixel of the monitor, {as_typed('scale', finest)}, not "
-                f"{config.scale}"
-            )
-        line = screen.horizontal
-        if any(part % 2 for part in (line.visible, line.front, line.sync, line.back)):
-            raise ValueError(
-                f"pixels: 2 per clock need an even width and blanking, which the {config.screen} screen lacks"
-            )
 
 
 BEAM = Beam(

@@ -14,7 +14,7 @@ FIXED_CODES = {"rects": 1, "all": 2}
 
 def engine_word(config: Configuration) -> int:
     """Return the value of a design's engine register."""
-    return register_map(config.table)["engine"].pack(
+    return register_map(*config.map)["engine"].pack(
         engine=config.facts.code,
         fraction_bits=config.fraction_bits,
         nearest=int(config.rounding == "nearest"),
@@ -30,7 +30,7 @@ def engine_word(config: Configuration) -> int:
 
 def size_word(config: Configuration) -> int:
     """Return the value of a design's size register."""
-    return register_map(config.table)["size"].pack(units=config.units, rectangles=config.table, rows=config.rows)
+    return register_map(*config.map)["size"].pack(units=config.units, rectangles=config.table, rows=config.rows)
 
 
 @block
@@ -53,14 +53,16 @@ def avalon_interface(
         bus: `SceneBus`; output.
         camera_readback: unsigned, 32 bits; the camera memory's word at bus.address, read at the camera's addresses
             only. 0 if the camera is fixed.
-        rect_readback: unsigned, 32 bits; the rectangle memory's word at bus.address, 0 if there is none.
+        rect_readback: unsigned, 32 bits; the word at bus.address of the rectangle memory and of other registers outside
+            of this block, 0 if there is none.
         bad_rectangle: flag; the shadow holds an enabled rectangle without a plane. Read with bus.commit.
         picture: `Picture`; output. With a fixed camera only run is driven.
         progress: `Progress`; input.
         config: the design.
     """
     live = not (config.fixed and config.fixed.camera)
-    registers = register_map(config.table)
+    whole_frames = config.facts.whole_frames
+    registers = register_map(*config.map)
     control, status, cycles = registers["control"], registers["status"], registers["cycles"]
     run_bit, commit_bit = control.fields["run"].lsb, control.fields["commit"].lsb
     reflections_low = control.fields["reflections"].lsb
@@ -96,9 +98,11 @@ def avalon_interface(
     read_data = unsigned(WORD_BITS)
     frame = unsigned(frame_bits)
     sticky_underrun, sticky_bad = bit(), bit()
-    slowest_row, slowest_group = unsigned(CYCLE_BITS), unsigned(CYCLE_BITS)
+    slowest_row, slowest_group = (tied(0, CYCLE_BITS) if whole_frames else unsigned(CYCLE_BITS) for _ in range(2))
     at_camera, at_light = bit(), bit() if config.light else tied(0, 1)
     irq_enable, irq_pending = bit(), bit()
+    take_scene = progress.take_scene if whole_frames else progress.start_screen
+    underrun = tied(0, 1) if whole_frames else progress.underrun
 
     control_memory = scene_word(
         clk, reset, bus, select_control, implemented=control_bits, shadow=control_word, live=live_control
@@ -112,7 +116,7 @@ def avalon_interface(
     def drive_ports():
         avs_s0.waitrequest.next = wait_request
         irq.next = irq_pending and irq_enable
-        bus.go_live.next = progress.start_screen
+        bus.go_live.next = take_scene
         picture.run.next = live_control[run_bit]
 
     # Byte enables become a mask of bits.
@@ -168,7 +172,7 @@ def avalon_interface(
         bus.commit.next = bus.write and select_control and written_ones[commit_bit]
         if bus.commit:
             commit_pending.next = True
-        elif progress.start_screen:
+        elif take_scene:
             commit_pending.next = False
 
     # If a bit is set and cleared in the same cycle, it is set.
@@ -179,7 +183,7 @@ def avalon_interface(
                 sticky_underrun.next = False
             if written_ones[bad_bit]:
                 sticky_bad.next = False
-        if progress.underrun:
+        if underrun:
             sticky_underrun.next = True
         if bus.commit and bad_rectangle:
             sticky_bad.next = True
@@ -195,17 +199,18 @@ def avalon_interface(
         if progress.start_screen:
             irq_pending.next = True
 
-    # The most cycles that a row and a group took since the last write to this register.
-    @always_seq(clk.posedge, reset=reset)
-    def keep_cycles():
-        if bus.write and bus.address == cycles_address and bus.mask != 0:
-            slowest_row.next = 0
-            slowest_group.next = 0
-        elif progress.busy:
-            if progress.row_cycles > slowest_row:
-                slowest_row.next = progress.row_cycles
-            if progress.group_cycles > slowest_group:
-                slowest_group.next = progress.group_cycles
+    if not whole_frames:
+        # The most cycles that a row and a group took since the last write to this register.
+        @always_seq(clk.posedge, reset=reset)
+        def keep_cycles():
+            if bus.write and bus.address == cycles_address and bus.mask != 0:
+                slowest_row.next = 0
+                slowest_group.next = 0
+            elif progress.busy:
+                if progress.row_cycles > slowest_row:
+                    slowest_row.next = progress.row_cycles
+                if progress.group_cycles > slowest_group:
+                    slowest_group.next = progress.group_cycles
 
     @always_comb
     def read():

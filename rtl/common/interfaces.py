@@ -102,20 +102,47 @@ class Picture(Group):
         super().__init__(**given)
 
 
+class FrameEvents(Interface):
+    """Events in the life of a frame: strobes, except time.
+
+    Attributes:
+        drawn: a frame is whole.
+        shown: a frame that has been drawn is handed over to the monitor.
+        again: StartScreen, and the frame before stands, as no whole one follows it.
+        late: StartScreen, and a frame is still being drawn.
+        list_full: a frame is abandoned, as its list is full.
+        time: with drawn, cycles of the frame since the StartScreen at which it began; with shown, cycles since it was
+            whole. It saturates.
+    """
+
+    def __init__(self):
+        self.drawn, self.shown, self.again, self.late, self.list_full = (bit() for _ in range(5))
+        self.time = unsigned(WORD_BITS)
+
+
 class Progress(Interface):
     """Progress of a renderer.
 
     Attributes:
         start_screen: strobe before the first visible line.
-        busy: a row is being rendered.
-        underrun: strobe; a row was not complete in time.
-        row_cycles: cycles since the row's start, including the present one; don't care unless busy.
-        group_cycles: cycles since the group's start, including the present one; don't care unless busy.
+        take_scene: strobe; the pending scene goes live. Only with whole frames, which may be late; else it goes live at
+            start_screen.
+        frames: what becomes of frames. Only with whole frames.
+        busy: a row or, with whole frames, a frame is being rendered.
+        underrun: strobe; a row was not complete in time. Never with whole frames.
+        row_cycles: cycles since the row's start, including the present one; don't care unless busy. Not with whole
+            frames.
+        group_cycles: cycles since the group's start, including the present one; don't care unless busy. Not with whole
+            frames.
     """
 
-    def __init__(self):
-        self.start_screen, self.busy, self.underrun = bit(), bit(), bit()
-        self.row_cycles, self.group_cycles = unsigned(CYCLE_BITS), unsigned(CYCLE_BITS)
+    def __init__(self, config: Configuration):
+        self.start_screen, self.busy = bit(), bit()
+        if config.facts.whole_frames:
+            self.take_scene, self.frames = bit(), FrameEvents()
+        else:
+            self.underrun = bit()
+            self.row_cycles, self.group_cycles = unsigned(CYCLE_BITS), unsigned(CYCLE_BITS)
 
 
 class Scan(Group):

@@ -25,8 +25,13 @@ class Engine(ABC):
         """The block that fills the screen, with the ports of `beam_renderer`."""
 
     def scales(self, screen: Screen) -> tuple[int, ...]:
-        """Return the resolution scales that it offers on a screen, the default first."""
-        return (1,)
+        """Return the resolution scales that it offers on a screen, the default first.
+
+        Without a line buffer they are those for which the monitor has pixels; first the one with a ray per pixel.
+        """
+        if self.facts.line_buffered:
+            return (1,)
+        return tuple(sorted(screen.scales, key=lambda scale: scale != screen.doubling))
 
     def refuse(self, options: Options) -> None:
         """Refuse options that the engine does not support.
@@ -34,6 +39,8 @@ class Engine(ABC):
         Raises:
             ValueError: an option is refused; the text is `option: why, and what to do instead`.
         """
+        if not self.facts.whole_frames and options.list:
+            raise ValueError(f"list: the {self.facts.name} engine has no lists of runs; leave out {options.list}")
         if not self.facts.divides:
             if options.fraction_bits:
                 raise ValueError(f"fraction_bits: the {self.facts.name} engine has none, not {options.fraction_bits}")
@@ -86,3 +93,21 @@ class Engine(ABC):
         Raises:
             ValueError: the design is too slow; the text says by how much, and what to do.
         """
+
+
+def check_pairs(config: Configuration) -> None:
+    """Refuse two pixels per clock unless they are neighbouring columns and all sync edges are between clocks.
+
+    Raises:
+        ValueError: the screen has no such pairs.
+    """
+    screen = config.whole_screen
+    if screen.doubling != 1:
+        finest = config.scale * screen.doubling
+        raise ValueError(
+            f"pixels: 2 per clock need one column per pixel of the monitor, {as_typed('scale', finest)}, not "
+            f"{config.scale}"
+        )
+    line = screen.horizontal
+    if any(part % 2 for part in (line.visible, line.front, line.sync, line.back)):
+        raise ValueError(f"pixels: 2 per clock need an even width and blanking, which the {config.screen} screen lacks")

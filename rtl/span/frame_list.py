@@ -14,8 +14,8 @@ from raycaster.rtl.span.run_queue import run_queue
 
 @block
 def frame_list(
-    clk, reset, scan, run, take_scene, stop, first_row, next_row, start, done, valid, runs, ready, events, shown,
-    columns: int, rows: int, entries: int, units: int = 1, pixels: int = 1, queue: int = 0,
+    clk, reset, scan, run, hold, take_scene, stop, first_row, next_row, start, done, valid, runs, ready, busy, events,
+    shown, columns: int, rows: int, entries: int, units: int = 1, pixels: int = 1, queue: int = 0,
 ):  # fmt: skip
     """Let units draw each frame into one of two lists, and show the other.
 
@@ -27,6 +27,7 @@ def frame_list(
         reset: synchronous, active high.
         scan: `Scan`, as in `list_player`.
         run: flag of the live `Picture`; read in the cycle after take_scene.
+        hold: flag; no row is dealt, as the units are not ready for this frame. Only with more than one unit.
         take_scene: output strobe; the pending scene goes live.
         stop: output flag; the units must be reset, as their frame is abandoned.
         first_row: output strobe, as in `row_slope`; in the second cycle after take_scene.
@@ -36,6 +37,7 @@ def frame_list(
         valid: unsigned, a bit for each unit; its run is there.
         runs: unsigned; a `ListEntry` of each unit, side by side, that of unit 0 in the lowest bits.
         ready: unsigned output, a bit for each unit; its run is taken if valid.
+        busy: output flag; a frame is being drawn.
         events: `FrameEvents`; output.
         shown: unsigned output; the pixels of a clock, as in `list_player`.
         columns: columns of a row.
@@ -57,7 +59,7 @@ def frame_list(
 
     switch = frame_switch(
         clk, reset, start_screen=scan.start_screen, run=run, whole=whole, full=full, take_scene=take_scene,
-        new_frame=new_frame, stop=stop, upper=upper, view_run=view_run, events=events,
+        new_frame=new_frame, stop=stop, upper=upper, view_run=view_run, busy=busy, events=events,
     )  # fmt: skip
     dealer = row_dealer(
         clk, reset=dropped, new_frame=new_frame, room=room, done=done, first_row=first_row, next_row=next_row,
@@ -120,7 +122,9 @@ def frame_list(
 
         @always_comb
         def connect():
-            room.next = all_room
             ready.next = all_ready
+            room.next = 0
+            if not hold:
+                room.next = all_room
 
     return instances()

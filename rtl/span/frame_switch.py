@@ -9,7 +9,9 @@ SwitchState = enum("WAIT", "BEGIN", "DRAW")
 
 
 @block
-def frame_switch(clk, reset, start_screen, run, whole, full, take_scene, new_frame, stop, upper, view_run, events):
+def frame_switch(
+    clk, reset, start_screen, run, whole, full, take_scene, new_frame, stop, upper, view_run, busy, events
+):
     """Show the last whole frame while the next one is drawn into the other list.
 
     A frame that is whole at StartScreen is shown from then on, and the next one begins with the scene that goes live.
@@ -30,6 +32,7 @@ def frame_switch(clk, reset, start_screen, run, whole, full, take_scene, new_fra
         stop: output flag; the frame is abandoned in this cycle.
         upper: output flag; the list that is drawn is the upper one, and the other one is shown.
         view_run: output flag; run of the frame in view. If it is low, the frame is black, and its list don't care.
+        busy: output flag; a frame is being drawn, from the cycle after take_scene on.
         events: `FrameEvents`; output.
     """
     longest = (1 << len(events.time)) - 1
@@ -84,6 +87,7 @@ def frame_switch(clk, reset, start_screen, run, whole, full, take_scene, new_fra
 
     @always_comb
     def report():
+        busy.next = state != SwitchState.WAIT
         events.drawn.next = completes
         events.shown.next = hands_over and drawn_run
         events.again.next = start_screen and not hands_over

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Entries of the lists that units draw and the monitor shows, and what becomes of frames."""
+"""Entries of the lists that units draw and the monitor shows."""
 
-from raycaster.hdl.records import Interface, Record
-from raycaster.hdl.signals import bit, bits_for, unsigned
-from raycaster.rtl.common.widths import WORD_BITS
+from raycaster.hdl.records import Record
+from raycaster.hdl.signals import bits_for
 
 
 def end_bits(columns: int) -> int:
@@ -25,21 +24,3 @@ class ListEntry(Record):
 
     def __init__(self, columns: int, pixel_bits: int):
         super().__init__({"end": end_bits(columns), "pixel": pixel_bits})
-
-
-class FrameEvents(Interface):
-    """Events in the life of a frame: strobes, except time.
-
-    Attributes:
-        drawn: a frame is whole.
-        shown: a frame that has been drawn is handed over to the monitor.
-        again: StartScreen, and the frame before stands, as no whole one follows it.
-        late: StartScreen, and a frame is still being drawn.
-        list_full: a frame is abandoned, as its list is full.
-        time: with drawn, cycles of the frame since the StartScreen at which it began; with shown, cycles since it was
-            whole. It saturates.
-    """
-
-    def __init__(self):
-        self.drawn, self.shown, self.again, self.late, self.list_full = (bit() for _ in range(5))
-        self.time = unsigned(WORD_BITS)

@@ -20,7 +20,7 @@ def module_ports(config: Configuration) -> dict[str, Any]:
     """Return the ports of ray_caster_module; in Verilog they become vga_* and, for the bus, avs_s0_* or similar."""
     interface = BRIDGES[config.bus].interface if config.bus in BRIDGES else AvalonPort
     ports = {"clk": bit(), "reset": ResetSignal(0, active=1, isasync=False), "avs_s0": None}
-    ports |= {BUSES[config.bus].port: interface(address_bits(config.table))}
+    ports |= {BUSES[config.bus].port: interface(address_bits(*config.map))}
     return ports | {"irq": bit(), "vga": Vga(config.port_bits)}
 
 

@@ -9,6 +9,7 @@ from raycaster.hdl.signals import bit, derived_clock, tied, unconnected, unsigne
 from raycaster.registers import address_bits
 from raycaster.rtl.bus.avalon_interface import avalon_interface
 from raycaster.rtl.bus.buses import BRIDGES
+from raycaster.rtl.bus.frame_registers import frame_registers
 from raycaster.rtl.common.clock_gate import clock_gate
 from raycaster.rtl.common.interfaces import AvalonPort, Picture, Progress, Rects, SceneBus
 from raycaster.rtl.common.records import Camera
@@ -45,10 +46,10 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         reflections = unconnected(REFLECTION_BITS)  # without reflections, it does not read their number
     if fixed:
         usable = tied((1 << config.rectangles) - 1, unsigned(config.rectangles))
-    bus = SceneBus(address_bits(config.table), is_read=not camera_fixed)
+    bus = SceneBus(address_bits(*config.map), is_read=not camera_fixed)
     picture = Picture(reflections=reflections, background=background)
     camera = Camera(config).tie(fixed.camera_fields) if camera_fixed else Camera(config)
-    rects, progress = Rects(config, usable=usable), Progress()
+    rects, progress = Rects(config, usable=usable), Progress(config)
     camera_readback, rect_readback = unsigned(WORD_BITS), unsigned(WORD_BITS)
     bad_rectangle = bit()
     resting = config.facts.line_buffered and not fixed
@@ -67,8 +68,18 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         avs_s0, name = AvalonPort(len(bus.address)), BUSES[config.bus].port
         port = {"s_axi": s_axi, "wb": wb, "s_apb": s_apb}[name]
         bridge = BRIDGES[config.bus].block(clk, reset, avm_m0=avs_s0, **{name: port})
+    outside = {"rect_readback": rect_readback}
+    if config.facts.whole_frames:
+        frame_readback, other_readback = unsigned(WORD_BITS), unsigned(WORD_BITS)
+        outside = {"rect_readback": other_readback}
+        frames = frame_registers(clk, reset, bus, progress.frames, frame_readback, rectangles=config.table)
+
+        @always_comb
+        def join_readbacks():
+            other_readback.next = rect_readback | frame_readback
+
     registers = avalon_interface(
-        clk, reset, avs_s0=avs_s0, irq=irq, bus=bus, camera_readback=camera_readback, rect_readback=rect_readback,
+        clk, reset, avs_s0=avs_s0, irq=irq, bus=bus, camera_readback=camera_readback, **outside,
         bad_rectangle=bad_rectangle, picture=picture, progress=progress, config=config,
     )  # fmt: skip
     # A write, a commit and StartScreen each take one clock of the scene's memories, however late the next clock comes.

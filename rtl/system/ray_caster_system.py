@@ -28,7 +28,7 @@ def ray_caster_system(clk, ready, buttons, uart_tx, vga, config: Configuration, 
         program: the file with the program, as in word_memory.
     """
     reset = ResetSignal(0, active=1, isasync=False)
-    bus = AvalonPort(address_bits(config.table))
+    bus = AvalonPort(address_bits(*config.map))
     irq = bit()
 
     reset_source = reset_release(clk, ready, reset)

@@ -21,7 +21,7 @@ def player_program(scene: Scene, config: Configuration) -> tuple[list[tuple[int,
 
     That part clears the interrupt, moves the camera (its word here is only a placeholder) and commits.
     """
-    registers = register_map(config.table)
+    registers = register_map(*config.map)
     enable, pending = registers["irq_enable"], registers["irq_pending"]
     load = scene_words(scene, config)
     frame = [(pending.address, pending.pack(start_screen=1)), (registers["camera"].address, 0), load[-1]]
@@ -49,7 +49,7 @@ def scene_player(clk, reset, buttons, irq, avm_m0, config: Configuration, scene:
     addresses, words = (tuple(column) for column in zip(*program, strict=True))
     last = len(program) - 1
     every_lane = (1 << LANES) - 1
-    camera = register_map(config.table)["camera"]
+    camera = register_map(*config.map)["camera"]
     camera_entry = first_of_frame + 1
     x_low, y_low, z_low = (camera.fields[axis].lsb for axis in "xyz")
     x_high, y_high, z_high = (camera.fields[axis].lsb + camera.fields[axis].width for axis in "xyz")

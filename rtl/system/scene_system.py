@@ -30,7 +30,7 @@ def scene_system(clk, ready, buttons, vga, config: Configuration, scene: Scene):
     """
     reset = ResetSignal(0, active=1, isasync=False)
     bus = AvalonPort(
-        address_bits(config.table), read=tied(0, 1), readdata=unconnected(WORD_BITS), readdatavalid=unconnected(1)
+        address_bits(*config.map), read=tied(0, 1), readdata=unconnected(WORD_BITS), readdatavalid=unconnected(1)
     )
     irq = bit()
 

@@ -21,7 +21,18 @@ from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.bus.avalon_host import avalon_host
 from raycaster.rtl.bus.buses import BRIDGES
-from raycaster.rtl.common.interfaces import Access, AvalonPort, Rects, Scan, SceneBus, Slope, Steps, Vector, Vga
+from raycaster.rtl.common.interfaces import (
+    Access,
+    AvalonPort,
+    FrameEvents,
+    Rects,
+    Scan,
+    SceneBus,
+    Slope,
+    Steps,
+    Vector,
+    Vga,
+)
 from raycaster.rtl.common.records import (
     Candidate,
     Facet,
@@ -40,7 +51,7 @@ from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.rtl.scene.written_rect import CORNER, surface_mask
 from raycaster.rtl.span.frame_list import frame_list
-from raycaster.rtl.span.lists import FrameEvents, ListEntry
+from raycaster.rtl.span.lists import ListEntry
 from raycaster.rtl.span.run_queue import run_queue
 from raycaster.rtl.video.video_generator import video_generator
 from raycaster.scene import Camera, Rectangle, Scene
@@ -238,7 +249,7 @@ class TableAlone(Alone):
     def facts(self) -> dict[str, int]:
         """Return the scene's words, and the masks that are kept of them."""
         scene, general, fixed = self._designs()
-        words, registers = dict(scene_words(scene, general)), register_map(general.table)
+        words, registers = dict(scene_words(scene, general)), register_map(*general.map)
         return {
             f"{name.upper()}_{index}": words[registers[f"rectangle[{index}].{name}"].address]
             for index in range(general.table)
@@ -255,6 +266,6 @@ class TableAlone(Alone):
         _, general, fixed = self._designs()
         yield rect_rom(bit(), Rects(fixed), fixed)
         yield rect_mem(
-            bit(), reset_signal(), SceneBus(address_bits(general.table)), readback=unsigned(WORD_BITS),
+            bit(), reset_signal(), SceneBus(address_bits(*general.map)), readback=unsigned(WORD_BITS),
             bad_rectangle=bit(), rects=Rects(general), config=general,
         )  # fmt: skip

@@ -129,8 +129,8 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
     "CONTEST_LATENCY": contest_latency,
     "FOLD_LEAD": fold_lead,
     # Registers.
-    "ADDRESS_BITS": lambda config: address_bits(config.table),
-    "VERSION_WORD": lambda config: register_map(config.table)["version"].reset,
+    "ADDRESS_BITS": lambda config: address_bits(*config.map),
+    "VERSION_WORD": lambda config: register_map(*config.map)["version"].reset,
     # Widths.
     **{
         name.upper(): lambda config, name=name: getattr(widths, name.upper())

@@ -20,7 +20,7 @@ def write_program(scene: Path, configuration: Configuration, directory: Path) ->
     """Compile the program for a scene and a design; return the file from which a memory is loaded."""
     shown = load_scene(scene, configuration.rectangles)
     x, y, z = shown.camera.position
-    still = register_map(configuration.table)["camera"].pack(x=x, z=z)
+    still = register_map(*configuration.map)["camera"].pack(x=x, z=z)
     words = ", ".join(f"{{{address}, {word:#x}}}" for address, word in scene_words(shown, configuration))
     (directory / "scene.h").write_text(
         "#include <stdint.h>\n"

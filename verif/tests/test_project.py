@@ -53,7 +53,6 @@ MAY_IMPORT_IN_RTL = {
     "engine": ("common",),
     "cull": ("common", "engine"),
     "buffered": ("common", "video", "engine", "cull"),
-    "span": ("common", "engine"),
     **dict.fromkeys(ENGINES, ("common", "video", "engine", "buffered")),
     "engines.py": ("engine", *ENGINES),
     "system": ("common", "dvi", "scene", "bus", "engines.py"),

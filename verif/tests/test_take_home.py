@@ -103,7 +103,7 @@ def check_component(config: Configuration, calls: list[list[str]], ports: Ports,
     """Check the parts of the Platform Designer component that differ between designs."""
     declared = [(call[2], (call[4].lower(), int(call[5]))) for call in calls if call[0] == "add_interface_port"]
     assert sorted(declared) == sorted(ports.items())
-    assert 2 ** ports["avs_s0_address"][1] == 1 << address_bits(config.table)
+    assert 2 ** ports["avs_s0_address"][1] == 1 << address_bits(*config.map)
     files = [call[1:] for call in calls if call[0] == "add_fileset_file"]
     assert files == 2 * [[name, "VERILOG", "PATH", name] for name in sources]
     hertz = config.screen_geometry.clock_hz

@@ -52,7 +52,7 @@ PORTS: dict[str, int | Callable[[Any], Any]] = {
     "picture": lambda _: interfaces.Picture(),
     "pixel": lambda config: records.Pixel(config.colour_bits),
     "place": interfaces.Place,
-    "progress": lambda _: interfaces.Progress(),
+    "progress": interfaces.Progress,
     "readback": widths.WORD_BITS,
     "rect": records.Rect,
     "rects": interfaces.Rects,

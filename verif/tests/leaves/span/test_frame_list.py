@@ -24,9 +24,9 @@ from list_vectors import (
 from vectors import named
 
 from raycaster.hdl.signals import unsigned
-from raycaster.rtl.common.interfaces import Scan
+from raycaster.rtl.common.interfaces import FrameEvents, Scan
 from raycaster.rtl.span.frame_list import frame_list
-from raycaster.rtl.span.lists import FrameEvents, ListEntry
+from raycaster.rtl.span.lists import ListEntry
 
 COLUMNS, ROWS, ENTRIES = 8, 4, 18
 

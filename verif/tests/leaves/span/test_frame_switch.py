@@ -4,8 +4,8 @@
 from list_vectors import Switch
 from vectors import named
 
+from raycaster.rtl.common.interfaces import FrameEvents
 from raycaster.rtl.span.frame_switch import frame_switch
-from raycaster.rtl.span.lists import FrameEvents
 
 
 def test_frame_switch(leaf_of, random):

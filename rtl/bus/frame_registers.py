@@ -18,7 +18,7 @@ def frame_registers(clk, reset, bus, events, readback, rectangles: int):
         bus: `SceneBus`; write, address, data and mask are read.
         events: `FrameEvents`; input.
         readback: unsigned output, 32 bits; the word at bus.address, 0 at other registers' addresses.
-        rectangles: entries of the rectangle table.
+        rectangles: entries of the rectangle table, 0 if there is none.
     """
     registers = register_map(rectangles, lists=True)
     counts, status = registers["frames.counts"], registers["frames.status"]

@@ -4,10 +4,9 @@
 from vectors import named
 
 from raycaster.registers import address_bits, register_map
-from raycaster.rtl.common.interfaces import SceneBus
+from raycaster.rtl.bus.frame_registers import frame_registers
+from raycaster.rtl.common.interfaces import FrameEvents, SceneBus
 from raycaster.rtl.common.widths import WORD_BITS
-from raycaster.rtl.span.frame_registers import frame_registers
-from raycaster.rtl.span.lists import FrameEvents
 
 RECTANGLES = 2
 EVENTS = {"drawn": 0.3, "shown": 0.2, "again": 0.3, "late": 0.03, "list_full": 0.1}

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+"""The way of the live rectangles to the units' own tables."""
+
+from myhdl import always, always_comb, always_seq, block, instances
+
+from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit
+
+
+@block
+def rect_copier(clk, reset, start, rects, store, number, copying, config: Configuration):
+    """Fetch all live rectangles once per frame, so that each unit has a copy to read at its own pace.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        start: strobe; a frame begins, and its scene is live.
+        rects: `Rects`; drives index and fetch.
+        store: output strobe; rects.rect is the rectangle of this number.
+        number: unsigned, `index_bits` bits; output, valid with store.
+        copying: output flag; not all rectangles are stored. From the cycle after start on, for
+            `config.rectangles` + 1 cycles.
+        config: the design.
+    """
+    last = config.rectangles - 1
+    fetching = bit()
+
+    @always_comb
+    def fetch():
+        rects.fetch.next = fetching
+
+    @always_seq(clk.posedge, reset=reset)
+    def walk():
+        if start:
+            fetching.next = True
+            rects.index.next = 0
+        elif fetching:
+            if rects.index == last:
+                fetching.next = False
+            else:
+                rects.index.next = rects.index + 1
+
+    @always(clk.posedge)
+    def follow():
+        store.next = fetching
+        number.next = rects.index
+
+    @always_comb
+    def show():
+        copying.next = fetching or store
+
+    return instances()

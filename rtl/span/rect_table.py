@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+"""A unit's own copy of the live rectangles."""
+
+from myhdl import always, block, instances
+
+from raycaster.configuration import Configuration
+from raycaster.hdl.signals import unsigned
+
+
+@block
+def rect_table(clk, store, number, rect, walk, config: Configuration):
+    """Keep rectangles for a unit, and present the one that it fetches.
+
+    Args:
+        clk: the clock.
+        store: strobe; rect is kept.
+        number: unsigned, `index_bits` bits; number of rect, read with store.
+        rect: `Rect`; read with store.
+        walk: `Rects`; index and fetch are read. rect is an output, a cycle after fetch; it stays until the next fetch.
+        config: the design.
+    """
+    words = [unsigned(len(rect.word)) for _ in range(config.rectangles)]
+
+    @always(clk.posedge)
+    def keep():
+        if store:
+            words[number].next = rect.word
+
+    @always(clk.posedge)
+    def present():
+        if walk.fetch:
+            walk.rect.word.next = words[walk.index]
+
+    return instances()

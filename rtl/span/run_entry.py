@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: MIT
+"""A unit's run as an entry of a list."""
+
+from myhdl import ConcatSignal, always_comb, block, instances
+
+from raycaster.configuration import CHANNEL_BITS, Configuration
+
+
+@block
+def run_entry(run, ready, entry, config: Configuration):
+    """Keep the highest `config.colour_bits` bits of each channel, and pass ready on.
+
+    Args:
+        run: `Run`; ready is an output.
+        ready: flag; the list takes the run.
+        entry: `ListEntry`; output.
+        config: the design.
+    """
+    red, green, blue = (
+        run.colour(end, end - config.colour_bits) for end in (3 * CHANNEL_BITS, 2 * CHANNEL_BITS, CHANNEL_BITS)
+    )
+    pixel = ConcatSignal(red, green, blue)
+    whole = entry.joined(end=run.end, pixel=pixel)
+
+    @always_comb
+    def join():
+        entry.word.next = whole
+        run.ready.next = ready
+
+    return instances()
