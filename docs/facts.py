@@ -136,8 +136,9 @@ def registers() -> str:
 
 
 def _registers() -> Iterator[RegNode]:
-    """Yield the registers of the default design, with a single entry of the rectangle table."""
-    return (node for node in compile_registers(configure().rectangles).descendants() if isinstance(node, RegNode))
+    """Yield all registers, with a single entry of the rectangle table."""
+    top = compile_registers(configure().rectangles, lists=True)
+    return (node for node in top.descendants() if isinstance(node, RegNode))
 
 
 def _place(node: RegNode) -> tuple[str, str]:

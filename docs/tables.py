@@ -13,7 +13,6 @@ from raycaster.cli.commands import COMMANDS
 from raycaster.complaints import as_typed
 from raycaster.errors import UserError
 from raycaster.report.designs import best_of, of_kept
-from raycaster.rtl.engines import ENGINES
 from raycaster.runs.outcomes import RESULTS, Outcome, kept_outcome, table
 
 
@@ -92,13 +91,14 @@ def _bitstreams(*kept: Outcome) -> str:
 def _one_scene(kept: Outcome) -> str:
     """Cells of designs with a scene built in, also relative to the general design."""
     scopes, rows = ("rects", "all"), []
+    engines = dict.fromkeys(one["engine"] for designs in kept.figures.values() for one in designs)
     for scene, designs in kept.figures.items():
         luts, cells = {(one["engine"], one["scope"]): one["luts"] for one in designs}, []
-        for engine in ENGINES:
+        for engine in engines:
             general = luts[engine, "general"]
             cells += [general, *(f"{luts[engine, scope]:,} ({luts[engine, scope] / general:.0%})" for scope in scopes)]
         rows.append([scene, *cells])
-    headings = (word for engine in ENGINES for word in (engine, *(f"{engine} `FIX={scope}`" for scope in scopes)))
+    headings = (word for engine in engines for word in (engine, *(f"{engine} `FIX={scope}`" for scope in scopes)))
     return table(["scene", *headings], rows)
 
 
@@ -112,30 +112,38 @@ def _error_and_time(kept: Outcome) -> str:
     return table(["design", "LUT4", "ns per pixel", "ms per frame", "mean share of wrong pixels"], rows)
 
 
-SOAKED = "{scenes:,} scenes, {pixels:,} pixels, {wrong_vs_golden} wrong"
-COVERED = ", ".join(f"{{{name}[reached]:,}} of {{{name}[all]:,}} ({name})" for name in ENGINES)
+SOAKED = "{scenes:,} scenes, {pixels:,} pixels, {wrong_vs_golden} wrong".format_map
+
+
+def _covered(figures: Mapping[str, Mapping[str, int]]) -> str:
+    """Lines and branches that were reached, by engine."""
+    return ", ".join(f"{one['reached']:,} of {one['all']:,} ({name})" for name, one in figures.items())
+
+
 CHECKS = {
     "soak-seed": ("random scenes, surfaces of all kinds, full size", "seed", SOAKED),
     "soak-exact": ("random scenes, turned cameras and surfaces of all kinds, full size", "exact", SOAKED),
     "soak-light": ("random scenes with lights, turned cameras and surfaces of all kinds, 64x48", "exact", SOAKED),
     "soak-beam": ("random scenes, turned cameras and surfaces of all kinds, full size", "beam", SOAKED),
-    "prove": ("proofs", "as the table below says", "{proved} of {proofs} proved"),
+    "prove": ("proofs", "as the table below says", "{proved} of {proofs} proved".format_map),
     "mutate": (
         "faults planted in modules", "the modules' leaf tests",
-        "{caught:,} caught in {modules} modules, {surviving:,} not",
+        "{caught:,} caught in {modules} modules, {surviving:,} not".format_map,
     ),
-    "coverage": ("lines and branches reached in frames and benches", "each", COVERED),
-    "verify-all": ("all tests, slow ones included", "each", "{passed:,} tests passed, {skipped} were skipped"),
+    "coverage": ("lines and branches reached in frames and benches", "each", _covered),
+    "verify-all": (
+        "all tests, slow ones included", "each", "{passed:,} tests passed, {skipped} were skipped".format_map,
+    ),
 }  # fmt: skip
-"""Rows of the table of long checks by the file of their figures: the check, the engine, and a format of the figures."""
+"""Rows of the table of long checks by the file of their figures: the check, the engine, and its figures in words."""
 
 
 def _checks(*kept: Outcome) -> str:
     """The long checks."""
     rows = []
     for one in kept:
-        title, engine, words = CHECKS[one.name]
-        rows.append([title, engine, words.format_map(one.figures), _measured(one)])
+        title, engine, in_words = CHECKS[one.name]
+        rows.append([title, engine, in_words(one.figures), _measured(one)])
     return table(["check", "engine", "result", "measured"], rows)
 
 

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from raycaster.configuration import Configuration
 from raycaster.golden.spans import Row, SpanModel
+from raycaster.golden.world import Rectangles
 from raycaster.scene import Scene
 
 FIRST_START = 4
@@ -65,6 +67,9 @@ def scene_cycles(scene: Scene, config: Configuration, reflections: int | None = 
     Several units get a copy of the table first, and have queues for two rows.
     """
     screen, units = config.screen_geometry, config.units
-    rows = SpanModel.of_scene(scene, screen, reflections).rows(screen, scene.camera.basis)
+    model = SpanModel.of_scene(scene, screen, reflections)
+    if config.fixed:  # it may leave out rectangles that are not seen
+        model = replace(model, rectangles=Rectangles.of_fixed(config.fixed.rectangles))
+    rows = model.rows(screen, scene.camera.basis)
     first = FIRST_START + (config.rectangles if units > 1 else 0)
     return frame_cycles(rows, screen.columns, units, 2 * screen.columns, first)

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import SupportsIndex
 
 import numpy as np
 
+from raycaster.fixed import FixedRectangle
 from raycaster.scene import Scene
 
 OTHER_AXES = ((1, 2), (0, 2), (0, 1))
@@ -56,6 +58,25 @@ class Rectangles:
             kinds=np.array([rectangle.kind for rectangle in scene.rect], dtype=np.int64),
             cells=np.array([rectangle.cell for rectangle in scene.rect], dtype=np.int64),
             colours_2=np.array([rectangle.colour2 or (0, 0, 0) for rectangle in scene.rect], dtype=np.uint8),
+        )
+
+    @classmethod
+    def of_fixed(cls, rectangles: Sequence[FixedRectangle]) -> Rectangles:
+        """Return the rectangles that are built into a design, all enabled."""
+        corners = []
+        for one in rectangles:
+            low, high = [one.u_low, one.v_low], [one.u_high, one.v_high]
+            for corner in (low, high):
+                corner.insert(one.axis, one.position)
+            corners.append([low, high])
+        return cls(
+            corners=np.array(corners, dtype=np.int64),
+            colours=np.array([list(one.colour.to_bytes(3)) for one in rectangles], dtype=np.uint8),
+            enabled=np.ones(len(rectangles), dtype=bool),
+            mirrors=np.array([one.mirror for one in rectangles], dtype=np.int64),
+            kinds=np.array([one.kind for one in rectangles], dtype=np.int64),
+            cells=np.array([8 << one.cell for one in rectangles], dtype=np.int64),
+            colours_2=np.array([list(one.colour_2.to_bytes(3)) for one in rectangles], dtype=np.uint8),
         )
 
     def __len__(self) -> int:

@@ -59,6 +59,7 @@ EXPECTED: Mapping[str, str] = {
     "string_type": "a string",
     "greater_than_equal": "{ge} or more",
     "less_than_equal": "{le} or less",
+    "multiple_of": "a multiple of {multiple_of}",
     **dict.fromkeys(("dict_type", "model_type", "model_attributes_type"), "a table"),
     **dict.fromkeys(("list_type", "tuple_type"), "a list"),
     "missing": "a value",

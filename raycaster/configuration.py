@@ -115,8 +115,8 @@ class Options:
     units: Whole | None = Field(
         None,
         ge=1,
-        description="parallel ray units, a divisor of the columns; by default 32 (seed), the fewest that meet the row "
-        "budget (exact) or one per pixel of a clock (beam)",
+        description="parallel ray units, a divisor of the columns except with span; by default 32 (seed), the fewest "
+        "that meet the row budget (exact), one per pixel of a clock (beam) or one (span)",
     )
     rectangles: Whole = Field(12, ge=1, le=MOST_RECTANGLES, description="capacity of the scene memory, in rectangles")
     reflections: Whole = Field(
@@ -128,14 +128,16 @@ class Options:
     rows: Whole | None = Field(
         None,
         description="rows of rays: 240 (640x480@60), 200 (640x400@70); seed and exact: 120, 96 or 60 (640x480@60 at "
-        "half the clock); beam: 180 (1280x720@60, or 1920x1080 at scale 3 or 6)",
+        "half the clock); beam and span: 180 (1280x720@60, or 1920x1080 at scale 3 or 6)",
     )
     scale: Whole | None = Field(
         None,
-        description="resolution scale: 1; beam: 1, 2 or 4, by default one ray per monitor pixel; "
+        description="resolution scale: 1; beam and span: 1, 2 or 4, by default one ray per monitor pixel; "
         "with 180 rows also 3 or 6 (1920x1080)",
     )
-    pixels: Whole = Field(1, ge=1, le=2, description="pixels per clock: 1, or 2 (beam, if each has its own column)")
+    pixels: Whole = Field(
+        1, ge=1, le=2, description="pixels per clock: 1, or 2 (beam and span, if each has its own column)"
+    )
     fraction_bits: Whole = Field(0, ge=0, le=8, description="fraction bits of origins, planes and quotients")
     rounding: Rounding = Field("truncate", description="rounding of quotients: truncate or nearest")
     divider_bits: Whole | Literal["auto"] = Field("auto", description="quotient bits per cycle: auto, 1, 2 or 3")
@@ -151,7 +153,7 @@ class Options:
     screen: Literal["vga", "tiny", "play"] = Field(
         "vga",
         description="screen: vga (on boards without a PLL, 640x480 has 25 MHz, 0.7 per cent below the standard), tiny "
-        "(64x48, for slow simulators) or play (320x240 with short frames, beam only)",
+        "(64x48, for slow simulators) or play (320x240 with short frames, beam and span only)",
     )
     allow_underrun: bool = Field(False, description="accept a design that cannot meet the row budget")
     culling: bool | None = Field(
@@ -160,7 +162,7 @@ class Options:
         "engine without a fixed scene",
     )
     turn: bool | None = Field(
-        None, description="camera that can turn, 1 or 0 (exact and beam); by default 1 if the scene's camera is turned"
+        None, description="camera that can turn, 1 or 0 (not seed); by default 1 if the scene's camera is turned"
     )
     materials: bool | None = Field(
         None, description="rectangles that mirror more or less than half, 1 or 0; by default 1 if the scene has any"
@@ -169,7 +171,7 @@ class Options:
         None, description="rectangles with a two-colour pattern, 1 or 0; by default 1 if the scene has any"
     )
     light: bool | None = Field(
-        None, description="point light with exact shadows, 1 or 0 (exact); by default 1 if the scene has one"
+        None, description="point light with exact shadows, 1 or 0 (exact and span); by default 1 if the scene has one"
     )
     bus: BusName = Field(OWN, description=f"bus of the registers: {listed(BUSES)}")
     fixed: FixedScene | None = Field(None, description="scene that is built into the hardware")

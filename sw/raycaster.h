@@ -44,7 +44,7 @@ enum raycaster_error {
     RAYCASTER_NO_SUCH_LOOK
 };
 
-enum raycaster_engine { RAYCASTER_SEED, RAYCASTER_EXACT, RAYCASTER_BEAM };
+enum raycaster_engine { RAYCASTER_SEED, RAYCASTER_EXACT, RAYCASTER_BEAM, RAYCASTER_SPAN };
 
 // Parts that are built into the hardware and cannot be set.
 enum raycaster_built_in { RAYCASTER_NOTHING_BUILT_IN, RAYCASTER_RECTANGLES_BUILT_IN, RAYCASTER_SCENE_BUILT_IN };

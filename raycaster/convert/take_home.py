@@ -107,6 +107,8 @@ def _description(config: Configuration) -> str:
         values["fixed"] = config.fixed.name
     if config.facts.line_buffered:
         del values["scale"], values["pixels"]
+    if not config.facts.whole_frames:
+        del values["list"]
     pad = max(map(len, values))
     return "".join(f"//     {name:<{pad}}  {value}\n" for name, value in values.items())
 

@@ -77,6 +77,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     screen = design.configuration.screen_geometry
     column, row = pixel_place(arguments.pixel or f"{screen.centre_column},{screen.rows // 2}")
     ray = Ray(design, row, column)
+    description_of(design.configuration, ray.unit)  # refuses before anything is built
     rows = rows_of(arguments.span, row, screen.rows)
     console = Console(soft_wrap=True)
     target = arguments.build / "wave" / design.name

@@ -394,10 +394,12 @@ def _cells(outcome: Outcome) -> list[str | Text]:
         return [configuration.engine, Text("failed", "red")] + (len(COLUMNS) - 2) * [""]
     row, group, wrong = result["worst_row_cycles"], result["worst_group_cycles"], result["wrong_vs_golden"]
     screen, frame = configuration.screen_geometry, result["frame_cycles"]
-    shares = [f"{row / screen.row_cycles:.0%}", f"{group / configuration.group_budget:.0%}"]
-    alone = f"{_frames_per_second(configuration, row):.0f}" if row else ""
     if configuration.facts.whole_frames:
-        shares, alone = [f"{frame / screen.frame_cycles:.0%}", ""], f"{screen.clock_hz / frame:.0f}" if frame else ""
+        shares = [f"{frame / screen.frame_cycles:.0%}", ""]
+        alone = f"{screen.clock_hz / frame:.0f}" if frame else ""
+    else:
+        shares = [f"{row / screen.row_cycles:.0%}", f"{group / configuration.group_budget:.0%}"]
+        alone = f"{_frames_per_second(configuration, row):.0f}" if row else ""
     return [
         configuration.engine,
         Text(str(wrong), "red" if wrong else ""),

@@ -9,7 +9,7 @@ from raycaster.rtl.common.widths import WORD_BITS
 
 
 @block
-def frame_registers(clk, reset, bus, events, readback, rectangles: int):
+def frame_registers(clk, reset, bus, events, rect_readback, readback, rectangles: int):
     """Keep what became of frames, for software: the registers `frames` of the map.
 
     Args:
@@ -17,7 +17,8 @@ def frame_registers(clk, reset, bus, events, readback, rectangles: int):
         reset: synchronous, active high.
         bus: `SceneBus`; write, address, data and mask are read.
         events: `FrameEvents`; input.
-        readback: unsigned output, 32 bits; the word at bus.address, 0 at other registers' addresses.
+        rect_readback: unsigned, 32 bits; the rectangle memory's word at bus.address.
+        readback: unsigned output, 32 bits; the word at bus.address, at other registers' addresses that of the memory.
         rectangles: entries of the rectangle table, 0 if there is none.
     """
     registers = register_map(rectangles, lists=True)
@@ -74,7 +75,7 @@ def frame_registers(clk, reset, bus, events, readback, rectangles: int):
 
     @always_comb
     def choose():
-        word.next = 0
+        word.next = rect_readback
         if bus.address == cycles_address:
             word.next = cycles
         elif bus.address == left_address:
@@ -83,6 +84,7 @@ def frame_registers(clk, reset, bus, events, readback, rectangles: int):
             word.next[count_bits:] = drawn
             word.next[again_low + count_bits : again_low] = again
         elif bus.address == status_address:
+            word.next = 0
             word.next[late_bit] = late
             word.next[full_bit] = list_full
 

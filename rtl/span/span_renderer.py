@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The renderer of the span engine, which draws whole frames and shows the last one."""
 
-from myhdl import ConcatSignal, always_comb, block, instances
+from myhdl import ConcatSignal, always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, side_by_side, tied, unsigned
-from raycaster.rtl.common.interfaces import Rects, Run, Scan, Vector
-from raycaster.rtl.common.records import Pixel
+from raycaster.rtl.common.interfaces import Picture, Rects, Run, Scan, Vector
+from raycaster.rtl.common.records import Camera, Pixel
 from raycaster.rtl.common.widths import index_bits, pixel_bits, span_slope_bits
 from raycaster.rtl.span.frame_list import frame_list
 from raycaster.rtl.span.lists import ListEntry
@@ -49,11 +49,22 @@ def span_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
     entries = [ListEntry(screen.columns, width) for _ in range(units)]
     pixels = unsigned(config.pixels * width)
 
+    # A fixed scene is constant, but processes cannot read constants only.
+    seen, view = picture, camera
+    if config.fixed and config.fixed.camera:
+        seen, view = Picture(run=picture.run), Camera(config)
+
+        @always(clk.posedge)
+        def copy_constants():
+            view.word.next = camera.word
+            seen.reflections.next = picture.reflections
+            seen.background.next = picture.background
+
     # The lists take one clock. If a pixel also takes only one, columns are announced one clock earlier.
     video = video_generator(
         clk=clk, reset=reset, scan=scan, pixel=shown, vga=vga, screen=screen, lead=int(one_clock)
     )  # fmt: skip
-    slopes = row_slope(clk=clk, first_row=first_row, next_row=next_row, camera=camera, slope=slope, config=config)
+    slopes = row_slope(clk=clk, first_row=first_row, next_row=next_row, camera=view, slope=slope, config=config)
     if units == 1:
         walks, hold = [rects], tied(0, 1)
     else:
@@ -68,7 +79,7 @@ def span_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
         ]  # fmt: skip
     drawers = [
         span_unit(
-            clk=clk, reset=reset_units, start=start(i), slope=slope, rects=walks[i], camera=camera, picture=picture,
+            clk=clk, reset=reset_units, start=start(i), slope=slope, rects=walks[i], camera=view, picture=seen,
             run=runs[i], done=dones[i], config=config,
         )
         for i in range(units)

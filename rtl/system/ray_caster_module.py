@@ -46,7 +46,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         reflections = unconnected(REFLECTION_BITS)  # without reflections, it does not read their number
     if fixed:
         usable = tied((1 << config.rectangles) - 1, unsigned(config.rectangles))
-    bus = SceneBus(address_bits(*config.map), is_read=not camera_fixed)
+    bus = SceneBus(address_bits(*config.map), is_read=config.facts.whole_frames or not camera_fixed)
     picture = Picture(reflections=reflections, background=background)
     camera = Camera(config).tie(fixed.camera_fields) if camera_fixed else Camera(config)
     rects, progress = Rects(config, usable=usable), Progress(config)
@@ -68,19 +68,14 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         avs_s0, name = AvalonPort(len(bus.address)), BUSES[config.bus].port
         port = {"s_axi": s_axi, "wb": wb, "s_apb": s_apb}[name]
         bridge = BRIDGES[config.bus].block(clk, reset, avm_m0=avs_s0, **{name: port})
-    outside = {"rect_readback": rect_readback}
+    readback = rect_readback
     if config.facts.whole_frames:
-        frame_readback, other_readback = unsigned(WORD_BITS), unsigned(WORD_BITS)
-        outside = {"rect_readback": other_readback}
-        frames = frame_registers(clk, reset, bus, progress.frames, frame_readback, rectangles=config.table)
-
-        @always_comb
-        def join_readbacks():
-            other_readback.next = rect_readback | frame_readback
+        readback = unsigned(WORD_BITS)
+        frames = frame_registers(clk, reset, bus, progress.frames, rect_readback, readback, rectangles=config.table)
 
     registers = avalon_interface(
-        clk, reset, avs_s0=avs_s0, irq=irq, bus=bus, camera_readback=camera_readback, **outside,
-        bad_rectangle=bad_rectangle, picture=picture, progress=progress, config=config,
+        clk, reset, avs_s0=avs_s0, irq=irq, bus=bus, camera_readback=camera_readback,
+        rect_readback=readback, bad_rectangle=bad_rectangle, picture=picture, progress=progress, config=config,
     )  # fmt: skip
     # A write, a commit and StartScreen each take one clock of the scene's memories, however late the next clock comes.
     if resting:

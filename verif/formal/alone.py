@@ -205,11 +205,11 @@ class ListAlone(Alone):
         """Elaborate the lists."""
         units, width = self.units, self.facts()["RUN_BITS"]
         yield frame_list(
-            bit(), reset_signal(), scan=Scan(), run=bit(), take_scene=bit(), stop=bit(), first_row=bit(),
+            bit(), reset_signal(), scan=Scan(), run=bit(), hold=bit(), take_scene=bit(), stop=bit(), first_row=bit(),
             next_row=bit(), start=unsigned(units), done=unsigned(units), valid=unsigned(units),
-            runs=unsigned(units * width), ready=unsigned(units), events=FrameEvents(), shown=unsigned(self.pixels),
-            columns=self.columns, rows=self.rows, entries=self.entries, units=units, pixels=self.pixels,
-            queue=self.columns,
+            runs=unsigned(units * width), ready=unsigned(units), busy=bit(), events=FrameEvents(),
+            shown=unsigned(self.pixels), columns=self.columns, rows=self.rows, entries=self.entries, units=units,
+            pixels=self.pixels, queue=self.columns,
         )  # fmt: skip
 
 

@@ -72,6 +72,7 @@ FEATURES = {
     "seed": ["", "m", "p", "mp"],
     "exact": ["", "t", "m", "p", "l", "tmpl"],
     "beam": ["", "t", "m", "p", "tmp"],
+    "span": ["", "t", "m", "p", "l", "tmpl"],
 }
 """Features of each engine's designs, by their first letters: none, each alone, and all."""
 

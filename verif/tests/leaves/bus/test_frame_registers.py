@@ -17,7 +17,7 @@ def test_frame_registers(leaf_of, random):
     registers = register_map(RECTANGLES, lists=True)
     words = {name: registers[f"frames.{name}"] for name in ("cycles", "left", "counts", "status")}
     made = {"bus": lambda: SceneBus(address_bits(RECTANGLES, lists=True)), "events": FrameEvents}
-    leaf = leaf_of(frame_registers, rectangles=RECTANGLES, readback=WORD_BITS, **made)
+    leaf = leaf_of(frame_registers, rectangles=RECTANGLES, rect_readback=WORD_BITS, readback=WORD_BITS, **made)
     initial = {"cycles": 0, "least": NONE, "drawn": 0, "again": 0, "late": 0, "list_full": 0}
     kept, both = dict(initial), set()
     leaf.case({"reset": 1})
@@ -30,11 +30,12 @@ def test_frame_registers(leaf_of, random):
         # The times of 32 bits are near each other, or at their limits.
         time = int(random.choice([0, 1, NONE - 1, NONE, random.integers(100, 110)], p=[0.05, 0.05, 0.1, 0.1, 0.7]))
         traffic = named("bus", {"write": write, "address": address, "data": data, "mask": mask})
-        leaf.case({"reset": reset, **traffic, **named("events", events), "events_time": time})
+        other = int(random.integers(1 << 32))
+        leaf.case({"reset": reset, **traffic, **named("events", events), "events_time": time, "rect_readback": other})
         read = {"cycles": kept["cycles"], "left": kept["least"]}
         read["counts"] = words["counts"].pack(drawn=kept["drawn"], again=kept["again"])
         read["status"] = words["status"].pack(late=kept["late"], list_full=kept["list_full"])
-        leaf.expect({"readback": read.get(name, 0)})
+        leaf.expect({"readback": read.get(name, other)})
         clears = write and name == "left" and mask
         ones = data & mask if write and name == "status" else 0
         both |= {flag for number, flag in enumerate(("late", "list_full")) if ones >> number & 1 and events[flag]}
