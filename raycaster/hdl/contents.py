@@ -27,7 +27,7 @@ from raycaster.hdl.internals import (
     bits_of,
 )
 from raycaster.hdl.records import Field, block_arguments, signals_in
-from raycaster.hdl.signals import Tied, Unconnected
+from raycaster.hdl.signals import Tied, Unconnected, Unset
 
 Connection = SignalType | str | None
 """A signal, a number in Verilog notation, or nothing."""
@@ -199,7 +199,8 @@ class Contents:
                 self.driven[id(part.symdict[name])] = kind
                 self._writers.setdefault(id(part.symdict[name]), []).append((part, name))
             if internals.keeps(part):
-                self.starting |= {id(part.symdict[name]) for name in (*part.outputs, *part.outmems)}
+                begun = [part.symdict[name] for name in (*part.outputs, *part.outmems)]
+                self.starting |= {id(one) for one in begun if not isinstance(one, Unset)}
             if internals.is_combinational(part) and all(isinstance(one, (Tied, Constant)) for one in part.senslist):
                 reason = "reads constants only, and Verilog would never run it; compute their values outside of it"
                 self._refuse(f"{part.name} {reason}", part.name)

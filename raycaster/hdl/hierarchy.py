@@ -241,6 +241,10 @@ class _Converter:
                 cut = bits_of(value) if isinstance(value, SliceSignal) else ()
                 parts = operands_of(value) if isinstance(value, ConcatSignal) else cut
                 return number, type(value), _description(value), _Constant(value.val), [*map(beginning, parts)]
+            if isinstance(value, list) and value and isinstance(value[0], SignalType):  # a memory may be large
+                first = id(value) not in known
+                number = known.setdefault(id(value), len(known))
+                return number, type(value), [beginning(element) for element in value * first]
             if isinstance(value, (list, tuple)):
                 return [beginning(element) for element in value]
             parts = []

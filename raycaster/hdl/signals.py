@@ -65,6 +65,13 @@ def signed(width: int) -> SignalType:
     return Signal(initial(0, Signed(width)))
 
 
+class Unset(list):
+    """Words of a memory that is unknown at power-up, as a large block RAM is: Verilog gives them no initial values.
+
+    In MyHDL they begin with those of the signals, so nothing may depend on a word before it is written.
+    """
+
+
 def bit() -> SignalType:
     """Return a one-bit signal, initially low."""
     return Signal(bool(0))

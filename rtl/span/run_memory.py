@@ -3,12 +3,12 @@
 
 from myhdl import always, block, instances
 
-from raycaster.hdl.signals import unsigned
+from raycaster.hdl.signals import Unset, unsigned
 
 
 @block
 def run_memory(clk, write, write_place, written, read_place, shown, places: int):
-    """Keep runs in a block RAM, whose output has a register.
+    """Keep runs in a block RAM, which is unknown at power-up, and whose output has a register.
 
     Args:
         clk: the clock.
@@ -20,7 +20,7 @@ def run_memory(clk, write, write_place, written, read_place, shown, places: int)
             cycle in which it was read.
         places: number of runs.
     """
-    memory = [unsigned(len(written.word)) for _ in range(places)]
+    memory = Unset(unsigned(len(written.word)) for _ in range(places))
     fetched = unsigned(len(written.word))
 
     @always(clk.posedge)

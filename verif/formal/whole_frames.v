@@ -41,14 +41,14 @@ wire [7:0] place = dut.place, first = upper ? ENTRIES : 0;
 reg known = 0, begins, drawing, waits, black;
 reg [1:0] whole;
 reg [7:0] rows_in, entries_in, dealt;
-reg [UNITS-1:0] busy;
+reg [UNITS-1:0] at_work;
 wire completes = drawing && row_written && rows_in == ROWS - 1;
 wire takes_scene = start_screen && !drawing, hands_over = takes_scene && waits;
 wire [7:0] rows_taken = rows_in + row_written, entries_taken = entries_in + write;
 always @(posedge clk) begin
     known <= 1;
     if (reset) begin
-        {begins, drawing, busy} <= 0;
+        {begins, drawing, at_work} <= 0;
         whole <= 0;
         {waits, black} <= 2'b11;
     end
@@ -56,7 +56,7 @@ always @(posedge clk) begin
         begins <= takes_scene;
         {rows_in, entries_in} <= new_frame ? 16'b0 : {rows_taken, entries_taken};
         dealt <= new_frame ? 0 : dealt + (start != 0);
-        busy <= stop ? 0 : busy & ~done | start;
+        at_work <= stop ? 0 : at_work & ~done | start;
         if (begins) {drawing, waits, black} <= {run, !run, !run};
         else if (completes || stop) {drawing, waits} <= {1'b0, completes};
         else if (takes_scene) waits <= 0;
@@ -92,7 +92,7 @@ end
 // Rows are dealt in order, each to the unit whose turn it is and as soon as that is idle and has room.
 reg settling, settled;
 always @(posedge clk) {settling, settled} <= reset || new_frame || stop ? 0 : {first_row, settling || settled};
-wire [UNITS-1:0] idle = dut.row_dealer_i.room & (~busy | done), in_turn = 1 << dealt % UNITS;
+wire [UNITS-1:0] idle = dut.row_dealer_i.room & (~at_work | done), in_turn = 1 << dealt % UNITS;
 always @* if (known && !reset) begin
     assert (start == (drawing && settled && dealt < ROWS ? idle & in_turn : 0) && next_row == (start != 0));
     if ($past(known) && !$past(reset)) assert (first_row == ($past(new_frame) && !$past(stop)));
@@ -116,7 +116,7 @@ wire [7:0] rows_left = dut.row_collector_i.rows_left, room_left = dut.row_collec
 always @* if (known) begin
     assert (state == (drawing ? 2 : begins ? 1 : 0) && !(begins && (drawing || waits)));
     assert (dut.frame_switch_i.ready == waits && dut.frame_switch_i.drawn_run == !black);
-    assert (dut.whole == completes && dut.row_dealer_i.busy == busy);
+    assert (dut.whole == completes && dut.row_dealer_i.busy == at_work);
     if (begins) assert ($past(start_screen));
     if (drawing) assert (!waits && !black);
     if (drawing) assert (rows_left + rows_taken == ROWS && room_left + entries_taken == ENTRIES);
