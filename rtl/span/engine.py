@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 from raycaster.configuration import Configuration, Facts, Options
 from raycaster.rtl.engine.engine import Engine, check_pairs
@@ -17,7 +19,10 @@ RUNS_PER_ROW = 120
 class Span(Engine):
     """Units that draw rows as runs. A frame that is late is shown later, and never wrong."""
 
-    renderer = staticmethod(span_renderer)
+    @property
+    def renderer(self) -> Callable[..., Any]:
+        """`span_renderer`."""
+        return span_renderer
 
     def refuse(self, options: Options) -> None:
         """Refuse culling."""
