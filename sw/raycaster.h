@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The ray tracer's driver: C99, without a C library, static variables or floating point.
 //
-// A program probes once, describes a picture with the set functions, and commits it, which shows all of it at once from
-// the next frame on. Nothing is clipped: an argument that does not fit is an error, and then nothing is written.
+// A program probes once, describes a picture with the set functions, and commits it, which shows all of it at once: from
+// the next frame on or, if frames are drawn into lists, once the frame is drawn. Nothing is clipped: an argument that
+// does not fit is an error, and then nothing is written.
 
 #ifndef RAYCASTER_H
 #define RAYCASTER_H
@@ -44,7 +45,7 @@ enum raycaster_error {
     RAYCASTER_NO_SUCH_LOOK
 };
 
-enum raycaster_engine { RAYCASTER_SEED, RAYCASTER_EXACT, RAYCASTER_BEAM, RAYCASTER_SPAN };
+enum raycaster_engine { RAYCASTER_SEED, RAYCASTER_EXACT, RAYCASTER_SPAN = 3 }; // 2 is reserved
 
 // Parts that are built into the hardware and cannot be set.
 enum raycaster_built_in { RAYCASTER_NOTHING_BUILT_IN, RAYCASTER_RECTANGLES_BUILT_IN, RAYCASTER_SCENE_BUILT_IN };
@@ -161,8 +162,8 @@ enum raycaster_error raycaster_set_reflections(const struct raycaster *device, u
 // Show the scene, or black.
 void raycaster_set_run(const struct raycaster *device, bool run);
 
-// Make all that was set go live at the next frame. RAYCASTER_STILL_COMMITTING: the last commit is not live yet; nothing
-// was done.
+// Make all that was set go live at the next frame or, if frames are drawn into lists, at the next one at which no frame
+// is being drawn. RAYCASTER_STILL_COMMITTING: the last commit is not live yet; nothing was done.
 enum raycaster_error raycaster_commit(const struct raycaster *device);
 
 // True if the last commit is not live yet.

@@ -28,7 +28,7 @@ from raycaster.design.options import (
 from raycaster.errors import UserError
 from raycaster.output import Console, Table, emptied, printable
 from raycaster.play.machine import Machine, build_machine
-from raycaster.play.system import FASTEST, play
+from raycaster.play.system import play, play_options
 from raycaster.play.walk import Walker, design_to_walk
 from raycaster.runs.outcomes import add_keep_option, keep
 from raycaster.scene import Light
@@ -84,13 +84,13 @@ def film_scene(design: Design, frames: int, build: Path, output: Path, console: 
     command = build_machine(config, build, processor=False)
     emptied(output)
     with Machine(command, config) as machine:
-        machine.frame(writes=walker.load())
+        machine.show(walker.load())
         for number in track(range(frames), "frames", console=console, transient=True):
             if light:
                 walker.light = circling(light, (number + 1) / frames)
             else:
                 walker.turn(yaws[number + 1] - yaws[number])
-            frame = machine.frame(writes=walker.writes())
+            frame = machine.show(walker.writes())
             wrong += frame.wrong(config)
             Image.fromarray(frame.picture).save(output / f"frame_{number:04}.png")
     return wrong
@@ -131,7 +131,7 @@ def verilog(arguments: argparse.Namespace) -> str:
     """Digest the Verilog that draws the frames, without the processor's."""
     if arguments.scene:
         return verilog_digest(design_to_walk(arguments.scene, given_options(arguments)).configuration)
-    return verilog_digest(configure(**FASTEST | given_options(arguments)))
+    return verilog_digest(configure(**play_options(given_options(arguments))))
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -166,7 +166,7 @@ def _film_scene(arguments: argparse.Namespace) -> int:
 
 def _film_game(arguments: argparse.Namespace) -> int:
     buttons = load(arguments.script)[: arguments.frames]
-    configuration = configure(**FASTEST | given_options(arguments))
+    configuration = configure(**play_options(given_options(arguments)))
     console = Console()
     build, output = arguments.build, arguments.output or arguments.build / "game"
     firmware = build_firmware((build / "firmware").absolute())
@@ -189,9 +189,10 @@ def _film_game(arguments: argparse.Namespace) -> int:
     write_contact_sheet(frames[step - 1 :: step][:SHEET_FRAMES], output / SHEET, SHEET_COLUMNS)
     console.print((output / "uart.txt").read_text(errors="replace"), end="")
     rate = result["clocks_a_second"]
-    table = Table("design", "frames", "with a scene", "wrong pixels", "clocks/s", "frames/s")
+    table = Table("design", "frames", "with a scene", "shown again", "wrong pixels", "clocks/s", "frames/s")
     speed = rate / configuration.screen_geometry.frame_cycles
-    table.add_row(configuration.name, result["frames"], result["shown"], result["wrong"], rate, f"{speed:.2f}")
+    counts = (result[name] for name in ("frames", "shown", "again", "wrong"))
+    table.add_row(configuration.name, *counts, rate, f"{speed:.2f}")
     console.print(table)
     figures = {key: result[key] for key in ("frames", "pixels", "wrong")} | {"frames_a_second": round(speed, 2)}
     keep(arguments, figures, verilog)

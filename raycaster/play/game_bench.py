@@ -30,6 +30,8 @@ class Tap:
         self.scenes = SceneFollower(viewer.configuration)
         self.writes = 0
         """Number of writes that the ray tracer accepted."""
+        self.again = 0
+        """Number of pictures that were shown again, as the next frame was late."""
         self._bench = viewer.bench
         cocotb.start_soon(self._receive())
         cocotb.start_soon(self._follow())
@@ -47,7 +49,9 @@ class Tap:
             clock = int(bench.bus_clock.value)
             # A write in StartScreen's clock is too late for it.
             if int(bench.bus_start_screen.value):
-                self.scenes.start_screen(clock)
+                takes, again = (bool(int(one.value)) for one in (bench.bus_takes_scene, bench.bus_again))
+                self.scenes.start_screen(clock, takes=takes, again=again)
+                self.again += again
             if int(bench.bus_write.value):
                 self.writes += 1
                 self.scenes.write(
@@ -76,7 +80,7 @@ async def play(bench: Any) -> None:
             bench.buttons.value = job.buttons[number + 1]
         before = time.process_time()
         Image.fromarray(frame).save(output / f"frame_{number:04}.png")
-        scene = tap.scenes.live
+        scene = tap.scenes.shown
         expected = viewer.golden_live(scene)
         pixels += expected[..., 0].size
         wrong += count_wrong(frame, expected)
@@ -95,6 +99,7 @@ async def play(bench: Any) -> None:
         "configuration": viewer.configuration.name,
         "frames": frames,
         "shown": shown,
+        "again": tap.again,
         "pixels": pixels,
         "wrong": wrong,
         "writes": tap.writes,

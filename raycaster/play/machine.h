@@ -16,7 +16,7 @@
 
 // A StartScreen, a write, or both in one clock.
 struct Event {
-    uint32_t clock, start_screen, written, address, writedata, byteenable;
+    uint32_t clock, start_screen, takes_scene, again, written, address, writedata, byteenable;
 };
 
 // Receiver: samples each bit in its middle.
@@ -126,8 +126,8 @@ private:
         busy += top.busy;
         see();
         if (top.start_screen || top.written)
-            events.push_back({static_cast<uint32_t>(clocks), top.start_screen, top.written, top.address, top.writedata,
-                              top.byteenable});
+            events.push_back({static_cast<uint32_t>(clocks), top.start_screen, top.takes_scene, top.again, top.written,
+                              top.address, top.writedata, top.byteenable});
         for (int level = 1; level >= 0; level--) {
             top.clk = level;
             top.eval();

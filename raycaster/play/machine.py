@@ -26,8 +26,11 @@ BENCH, LOOP, MACHINE = (Path(__file__).with_name(f"{TOP}.{kind}") for kind in ("
 SIGNS = Path(__file__).with_name("signs.h")
 """Header that the compiler includes before a design."""
 
-EVENT_WORDS = 6
+EVENT_WORDS = 8
 """Words of 32 bits that the loop writes for a clock's events."""
+
+MOST_FRAMES = 60
+"""Most frames to wait for a committed scene."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,7 @@ class Frame:
     """Clocks in which a picture was computed."""
 
     scene: LiveScene | None
-    """Scene in the live registers for this picture; None before the first StartScreen."""
+    """Scene of this picture; None before the first StartScreen, and for a black picture without one."""
 
     text: str
     """Text from the serial port."""
@@ -113,14 +116,26 @@ class Machine:
         shown = pixels[-height * width :]
         picture[len(picture) - len(shown) :] = shown
         words = np.frombuffer(self._read(4 * EVENT_WORDS * events), dtype="<u4").reshape(-1, EVENT_WORDS).tolist()
-        for clock, start_screen, written, address, data, lanes in words:
+        for clock, start_screen, takes, again, written, address, data, lanes in words:
             # A write in StartScreen's clock is too late for it.
             if start_screen:
-                self._scenes.start_screen(clock)
+                self._scenes.start_screen(clock, takes=bool(takes), again=bool(again))
             if written:
                 self._scenes.write(clock, address, data, lanes)
         text = self._read(characters).decode("ascii", "replace")
-        return Frame(picture.reshape(height, width, 3), clocks, busy, self._scenes.live, text)
+        return Frame(picture.reshape(height, width, 3), clocks, busy, self._scenes.shown, text)
+
+    def show(self, writes: Sequence[tuple[int, int]]) -> Frame:
+        """Run until the scene that a driver commits is shown; without lists of frames, that is the next frame.
+
+        Raises:
+            SimulationError: the simulation ended, or the scene is not shown within `MOST_FRAMES` frames.
+        """
+        for number in range(MOST_FRAMES):
+            frame = self.frame(writes=() if number else writes)
+            if self._scenes.shows_last:
+                return frame
+        raise SimulationError(f"a scene was not shown within {MOST_FRAMES} frames; do the lists hold its runs?")
 
     def _read(self, size: int) -> bytes:
         data = self._output.read(size)
@@ -157,7 +172,8 @@ def machine_sources(config: Configuration, build: Path = BUILD, *, processor: bo
         # A table of constants would hide from the optimiser that the camera's rays have no mirror behind them.
         "-O3", "-fno-table", "--x-assign", "fast", "--x-initial", "fast", "--no-timing", "--noassert",
         "-Wno-lint", "-Wno-style",
-        *((f"-DSYSTEM={files[-1].stem}",) if processor else ()), f"-GBUTTONS={len(BUTTON_NAMES)}",
+        *((f"-DSYSTEM={files[-1].stem}",) if processor else ()),
+        *(("-DWHOLE_FRAMES",) if config.facts.whole_frames else ()), f"-GBUTTONS={len(BUTTON_NAMES)}",
         f"-GCOLOUR_BITS={config.colour_bits * config.pixels}", f"-GADDRESS_BITS={address_bits(*config.map)}",
     )  # fmt: skip
     defines = (

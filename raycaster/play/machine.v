@@ -3,7 +3,7 @@
 // the ray tracer's bus are brought out.
 //
 // SYSTEM: the system's module, defined if there is a processor. TAPS: number of 32-bit signals of a ray unit that the
-// module `taps` brings out, defined if there is one.
+// module `taps` brings out, defined if there is one. WHOLE_FRAMES: defined if the design draws into lists of frames.
 
 module machine #(
     parameter BUTTONS = 5,
@@ -28,7 +28,9 @@ module machine #(
     output wire                    vga_blank_n,
     output wire                    vga_clk,
     output wire                    busy,            // computing a picture
-    output wire                    start_screen,    // the committed scene goes live with this clock
+    output wire                    start_screen,    // a picture begins after this clock
+    output wire                    takes_scene,     // the committed scene goes live with this clock
+    output wire                    again,           // with start_screen, the last picture is shown again
     output wire                    written,         // the ray tracer accepts a write with this clock
     output wire [ADDRESS_BITS-1:0] address,
     output wire [3:0]              byteenable,
@@ -93,6 +95,13 @@ ray_caster_module ray_caster_module_i (
 
 assign busy = `MODULE.progress_busy;
 assign start_screen = `MODULE.progress_start_screen && !reset;
+`ifdef WHOLE_FRAMES
+assign takes_scene = `MODULE.progress_take_scene && !reset;
+assign again = `MODULE.progress_frames_again;
+`else
+assign takes_scene = start_screen;
+assign again = 1'b0;
+`endif
 assign written = `MODULE.avs_s0_write && !`MODULE.avs_s0_waitrequest && !reset;
 assign address = `MODULE.avs_s0_address;
 assign byteenable = `MODULE.avs_s0_byteenable;

@@ -10,11 +10,11 @@ from typing import Any
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.design.for_scene import Design, design_for
-from raycaster.play.system import FASTEST
+from raycaster.play.system import play_options
 from raycaster.program import basis_fields, light_fields, scene_words
 from raycaster.registers import register_map
-from raycaster.rtl.engines import ENGINES, EXACT
-from raycaster.scene import Camera, Light, Scene, load_scene
+from raycaster.rtl.engines import ENGINES
+from raycaster.scene import Camera, Light, Scene
 
 STEP = 3.0
 """World units per frame that a held button moves the camera."""
@@ -36,7 +36,7 @@ TURNS = ("turn left", "turn right", "look up", "look down")
 
 
 def design_to_walk(path: Path, options: Mapping[str, Any]) -> Design:
-    """Choose the hardware for a walk through a scene: the fastest that shows it, with a camera that turns if it can.
+    """Choose the hardware for a walk through a scene: by default the fastest, with a camera that turns if it can.
 
     Args:
         path: the scene file.
@@ -45,9 +45,9 @@ def design_to_walk(path: Path, options: Mapping[str, Any]) -> Design:
     Raises:
         UserError: the scene or an option is wrong; one line.
     """
-    defaults: dict[str, Any] = {"engine": EXACT.facts.name} if load_scene(path).light else dict(FASTEST)
-    engine = ENGINES.get(options.get("engine", defaults["engine"]))
-    return design_for(path, options, defaults | ({"turn": True} if engine and "turn" in engine.facts.features else {}))
+    chosen = play_options(options)
+    engine = ENGINES.get(chosen["engine"])
+    return design_for(path, options, chosen | ({"turn": True} if engine and "turn" in engine.facts.features else {}))
 
 
 class Walker:

@@ -27,7 +27,7 @@ from raycaster.errors import UserError, not_installed
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.output import Console
 from raycaster.play.machine import Frame, Machine, build_machine
-from raycaster.play.system import FASTEST
+from raycaster.play.system import play_options
 from raycaster.play.walk import TURNS, WALKS, Walker, design_to_walk
 from raycaster.sim.simulator import SimulationError, announced
 from raycaster.sw.firmware import build_firmware
@@ -216,7 +216,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         keys = WALK_KEYS | (TURN_KEYS if config.turn else {})
         names: Sequence[str] = WALKS + TURNS
     else:
-        config, walker = configure(**FASTEST | options), None
+        config, walker = configure(**play_options(options)), None
         program = build_firmware((arguments.build / "firmware").absolute()).words
         keys, names = GAME_KEYS, BUTTON_NAMES
 

@@ -336,6 +336,11 @@ class SceneFollower:
         self._commits: list[tuple[int, dict[int, int]]] = []
         self.live: LiveScene | None = None
         """Scene that the last StartScreen made live; None before the first."""
+        self.shown: LiveScene | None = None
+        """Scene of the picture from the last StartScreen on; None for black."""
+        self.shows_last = False
+        """The picture is that of the last commit."""
+        self._lives_last = False
 
     @property
     def shadow(self) -> dict[int, int]:
@@ -349,11 +354,28 @@ class SceneFollower:
             word.write(data, mask)
         if address == self._control_address and data & mask & self._commit:
             self._commits.append((clock, self.shadow))
+            self._lives_last = self.shows_last = False
 
-    def start_screen(self, clock: int) -> None:
-        """Record that StartScreen was high in this clock."""
+    def start_screen(self, clock: int, *, takes: bool = True, again: bool = False) -> None:
+        """Record that StartScreen was high in this clock.
+
+        Args:
+            clock: the clock.
+            takes: the pending scene goes live; always without lists of frames.
+            again: with lists of frames, the last picture is shown again, as no whole one follows it.
+        """
+        whole_frames = self._config.facts.whole_frames
+        if whole_frames and not again:
+            self.shown, self.shows_last = self.live, self._lives_last
+        if takes:
+            self._take_scene(clock)
+        if not whole_frames:
+            self.shown, self.shows_last = self.live, self._lives_last
+
+    def _take_scene(self, clock: int) -> None:
         while self._commits and self._commits[0][0] + COMMIT_CLOCKS <= clock:
             _, snapshot = self._commits.pop(0)
+            self._lives_last = not self._commits
             for address, shadow in snapshot.items():
                 self._words[address].pending = shadow
         for word in self._words.values():

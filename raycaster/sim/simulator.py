@@ -152,7 +152,8 @@ class Bench:
     def defines(self, configuration: Configuration) -> dict[str, int]:
         """Return the macros of its Verilog, for a design."""
         bus = {} if configuration.bus == OWN else {"BRIDGED": 1}
-        return bus | ({"WAVE_WINDOW": 1} if self.window else {})
+        lists = {"WHOLE_FRAMES": 1} if self.system and configuration.facts.whole_frames else {}
+        return bus | lists | ({"WAVE_WINDOW": 1} if self.window else {})
 
     def included(self, configuration: Configuration) -> dict[str, str]:
         """Return the files that its Verilog includes, for a design: their texts by name."""

@@ -62,11 +62,23 @@ module system_bench #(
     wire halted /*verilator public_flat_rw*/ = dut.processor_host_i.picorv32_i.trap;
 
     // The tap: every write that the ray tracer accepts, and every StartScreen, with the clock at whose end it happened.
+    // With lists of frames (WHOLE_FRAMES), the committed scene may go live later, and a picture may be shown again.
     wire writes = dut.ray_caster_module_i.avs_s0_write && !dut.ray_caster_module_i.avs_s0_waitrequest && !dut.reset;
     wire starts = dut.ray_caster_module_i.progress_start_screen && !dut.reset;
+`ifdef WHOLE_FRAMES
+    wire takes = dut.ray_caster_module_i.progress_take_scene;
+    wire stands = dut.ray_caster_module_i.progress_frames_again;
+    wire underrun = 1'b0;
+`else
+    wire takes = starts;
+    wire stands = 1'b0;
+    wire underrun = dut.ray_caster_module_i.progress_underrun;
+`endif
     reg [31:0] clocks;
     reg bus_write /*verilator public_flat_rw*/;
     reg bus_start_screen /*verilator public_flat_rw*/;
+    reg bus_takes_scene /*verilator public_flat_rw*/;         // with StartScreen: the committed scene goes live
+    reg bus_again /*verilator public_flat_rw*/;               // with StartScreen: the last picture is shown again
     reg [31:0] bus_clock /*verilator public_flat_rw*/;
     reg [ADDRESS_BITS-1:0] bus_address /*verilator public_flat_rw*/;
     reg [3:0] bus_byteenable /*verilator public_flat_rw*/;
@@ -82,13 +94,15 @@ module system_bench #(
         if (writes || starts) begin
             bus_write = writes;
             bus_start_screen = starts;
+            bus_takes_scene = takes;
+            bus_again = stands;
             bus_clock = clocks;
             bus_address = dut.ray_caster_module_i.avs_s0_address;
             bus_byteenable = dut.ray_caster_module_i.avs_s0_byteenable;
             bus_writedata = dut.ray_caster_module_i.avs_s0_writedata;
             bus_event = ~bus_event;
         end
-        if (dut.ray_caster_module_i.progress_underrun && !dut.reset)
+        if (underrun && !dut.reset)
             underruns = underruns + 1;
         clocks = clocks + 1;
     end

@@ -54,7 +54,7 @@ static void put_error(const char *where, enum raycaster_error error) {
 }
 
 static void put_device(const struct raycaster *device) {
-    static const char *const ENGINES[] = {"seed", "exact", "beam"};
+    static const char *const ENGINES[] = {"seed", "exact", "unknown", "span"};
     put_item("RayCaster ", device->major);
     put_item(".", device->minor);
     put_text(", engine ");
@@ -131,7 +131,10 @@ int main(void) {
         enum raycaster_error error = raycaster_wait_frame(&device, POLLS_A_FRAME);
         if (error == RAYCASTER_OK) {
             put_events(&game, game_step(&game, *REGISTERS(SYSTEM_BUTTONS_BASE)));
-            error = show(&game, &device);
+            // A late frame delays the last commit; this step is then shown with the next one.
+            if (!raycaster_is_committing(&device)) {
+                error = show(&game, &device);
+            }
         }
         put_new_error(&last, error);
     }
