@@ -66,10 +66,25 @@ def scene_cycles(scene: Scene, config: Configuration, reflections: int | None = 
 
     Several units get a copy of the table first, and have queues for two rows.
     """
-    screen, units = config.screen_geometry, config.units
+    return cycles_of(scene_rows(scene, config, reflections), config)
+
+
+def scene_rows(scene: Scene, config: Configuration, reflections: int | None = None) -> list[Row]:
+    """Return the rows of a design's frame of a scene, with its own reflections if none are given."""
+    screen = config.screen_geometry
     model = SpanModel.of_scene(scene, screen, reflections)
     if config.fixed:  # it may leave out rectangles that are not seen
         model = replace(model, rectangles=Rectangles.of_fixed(config.fixed.rectangles))
-    rows = model.rows(screen, scene.camera.basis)
-    first = FIRST_START + (config.rectangles if units > 1 else 0)
-    return frame_cycles(rows, screen.columns, units, 2 * screen.columns, first)
+    return list(model.rows(screen, scene.camera.basis))
+
+
+def cycles_of(rows: Iterable[Row], config: Configuration) -> int:
+    """Return the cycles in which a design draws a frame of these rows."""
+    columns = config.screen_geometry.columns
+    first = FIRST_START + (config.rectangles if config.units > 1 else 0)
+    return frame_cycles(rows, columns, config.units, 2 * columns, first)
+
+
+def runs_of(rows: Iterable[Row]) -> int:
+    """Return the entries that a list needs for a frame of these rows."""
+    return sum(len(row.runs) for row in rows)

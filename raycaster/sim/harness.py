@@ -95,12 +95,17 @@ class Harness(Viewer):
     async def load(self, scene: Scene, reflections: int) -> None:
         """Write a scene and commit it."""
         await self.bus.load_scene(scene)
-        await self.bus.commit(reflections=reflections)
-        if self.configuration.facts.whole_frames:
-            await self.wait_for_frame()
+        await self.commit(reflections=reflections)
+
+    async def commit(self, *, run: int = 1, reflections: int) -> None:
+        """Commit what was written, so that the next frame shows it."""
+        await self.bus.commit(run=run, reflections=reflections)
+        await self.wait_for_frame()
 
     async def wait_for_frame(self) -> None:
-        """Wait until the frame of the committed scene is whole, so that the next StartScreen shows it."""
+        """With lists, wait until the frame of the committed scene is whole, so that the next StartScreen shows it."""
+        if not self.configuration.facts.whole_frames:
+            return
         while (await self.bus.read("control"))["commit"] or (await self.bus.read("status"))["busy"]:
             await self.monitor.line()
         self.monitor.forget()

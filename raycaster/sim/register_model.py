@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from raycaster.configuration import Configuration
+from raycaster.golden.frames import cycles_of
 from raycaster.golden.model import Model
+from raycaster.golden.spans import SpanModel
 from raycaster.golden.world import Rectangles
 from raycaster.registers import Register, register_map
 from raycaster.rtl.engines import engine_of
@@ -155,12 +158,92 @@ class CameraWords(dict[str, Word]):
         return x, y, z
 
 
+@dataclass
+class Switch:
+    """`frame_switch`, cycle by cycle. A frame is anything that stands for a picture; None is black."""
+
+    state: str = "wait"
+    ready: bool = True
+    drawn: Any = None
+    shown: Any = None
+    upper: bool = False
+    began: int = 0
+    ended: int = 0
+
+    def events(self, start_screen: bool, whole: bool, full: bool, cycle: int) -> dict[str, int | None]:
+        """Return the events of a cycle, as in `FrameEvents`."""
+        hands_over = start_screen and self.state == "wait" and self.ready
+        drawing = self.state == "draw"
+        drawn, shown = drawing and whole, hands_over and self.drawn is not None
+        time = cycle - self.began if drawn else cycle - self.ended if shown else None
+        events = {"drawn": drawn, "shown": shown, "again": start_screen and not hands_over}
+        return events | {"late": start_screen and drawing, "list_full": drawing and full, "time": time}
+
+    def clock(self, start_screen: bool, run: bool, frame: Any, whole: bool, full: bool, cycle: int) -> None:
+        """End a cycle; frame is the picture that is drawn if a frame begins in it."""
+        if self.state == "wait" and start_screen:
+            if self.ready:
+                self.upper, self.shown = not self.upper, self.drawn
+            self.state, self.ready, self.began = "begin", False, cycle
+        elif self.state == "begin":
+            self.drawn = frame if run else None
+            self.state, self.ready = ("draw", False) if run else ("wait", True)
+        elif self.state == "draw" and (whole or full):
+            self.state, self.ready, self.ended = "wait", whole, cycle
+
+    def reset(self) -> None:
+        """Start again, with a black frame that is whole."""
+        self.__init__()
+
+
+class FrameCounts:
+    """The registers `frames`."""
+
+    NONE = (1 << 32) - 1
+    """Least time that is left, if there was no frame."""
+
+    def __init__(self):
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget all frames."""
+        self.cycles, self.least, self.drawn, self.again, self.late, self.list_full = 0, self.NONE, 0, 0, False, False
+
+    def fields(self) -> dict[str, dict[str, int]]:
+        """Return the fields of each register."""
+        return {
+            "frames.cycles": {"cycles": self.cycles},
+            "frames.left": {"cycles": self.least},
+            "frames.counts": {"drawn": self.drawn, "again": self.again},
+            "frames.status": {"late": int(self.late), "list_full": int(self.list_full)},
+        }
+
+    def clock(self, events: Mapping[str, int | None], written: str, ones: int, mask: int) -> None:
+        """Apply a clock edge, with the events of the cycle and the bits of a register that are written with 1."""
+        time = events["time"] or 0
+        if events["drawn"]:
+            self.cycles = time
+        least = self.NONE if written == "frames.left" and mask else self.least
+        self.least = 0 if events["late"] else min(least, time) if events["shown"] else least
+        self.drawn = (self.drawn + bool(events["drawn"])) % (1 << 16)
+        self.again = (self.again + bool(events["again"])) % (1 << 16)
+        cleared = ones if written == "frames.status" else 0
+        self.late = bool(events["late"] or (self.late and not cleared & 1))
+        self.list_full = bool(events["list_full"] or (self.list_full and not cleared & 2))
+
+
+NO_EVENTS: Mapping[str, int | None] = dict.fromkeys(("drawn", "shown", "again", "late", "list_full", "time"), 0)
+
+
 class Agent:
-    """Model of the agent: a write takes effect a cycle after it is accepted, a read is answered two cycles after."""
+    """Model of the agent: a write takes effect a cycle after it is accepted, a read is answered two cycles after.
+
+    With lists of frames, it includes the registers `frames`.
+    """
 
     def __init__(self, config: Configuration):
         self.config = config
-        registers = register_map(config.rectangles)
+        registers = register_map(*config.map)
         self.registers = registers
         self.addresses = {register.address: name for name, register in registers.items()}
         self.control = Word(registers["control"].implemented & ~registers["control"].fields["commit"].mask)
@@ -183,6 +266,7 @@ class Agent:
         """Enter the state after a clock edge with reset high: no request is pending."""
         self.control.reset()
         self.background.reset()
+        self.frames = FrameCounts()
         self.waiting = True
         self.bus = {"bus_write": 0, "bus_commit": 0, "bus_address": 0, "bus_data": 0, "bus_mask": 0}
         self.reading = False
@@ -204,6 +288,7 @@ class Agent:
             "cycles": {"row": self.row, "group": self.group},
             "irq_enable": {"start_screen": int(self.irq_enable)},
             "irq_pending": {"start_screen": int(self.irq_pending)},
+            **self.frames.fields(),
         }  # fmt: skip
         if name in fields:
             return self.registers[name].pack(**fields[name])
@@ -220,7 +305,7 @@ class Agent:
         valid, data = self.answer
         return {
             **self.bus,
-            "bus_go_live": inputs["progress_start_screen"],
+            "bus_go_live": self._go_live(inputs),
             "avs_s0_waitrequest": int(self.waiting),
             "avs_s0_readdatavalid": valid,
             "avs_s0_readdata": data,
@@ -230,19 +315,24 @@ class Agent:
             "picture_background": self.background.live,
         }
 
-    def clock(self, inputs: dict[str, int]) -> None:
-        """Apply a clock edge, with the agent's inputs before it."""
+    def _go_live(self, inputs: dict[str, int]) -> int:
+        return inputs["progress_take_scene" if self.config.facts.whole_frames else "progress_start_screen"]
+
+    def clock(self, inputs: dict[str, int], events: Mapping[str, int | None] = NO_EVENTS) -> None:
+        """Apply a clock edge, with the agent's inputs before it and, with lists, the events of frames."""
         if inputs["reset"]:
             self.reset()
             return
+        go_live = self._go_live(inputs)
         bus, start_screen = self.bus, inputs["progress_start_screen"]
         name = self.addresses.get(bus["bus_address"], "") if bus["bus_write"] else ""
         ones = bus["bus_data"] & bus["bus_mask"]
         self.answer = (int(self.reading), self.read(inputs) if self.reading else self.answer[1])
         for register, word in (("control", self.control), ("background", self.background)):
-            word.clock({**bus, "bus_go_live": start_screen}, name == register)
+            word.clock({**bus, "bus_go_live": go_live}, name == register)
         self.frame = (self.frame + start_screen) % (1 << 16)
-        self.underrun = bool(inputs["progress_underrun"] or (self.underrun and not (name == "status" and ones & 2)))
+        self.frames.clock(events, name, ones, bus["bus_mask"])
+        self.underrun = bool(inputs.get("progress_underrun") or (self.underrun and not (name == "status" and ones & 2)))
         bad_now = bus["bus_commit"] and inputs["bad_rectangle"]
         self.bad = bool(bad_now or (self.bad and not (name == "status" and ones & 4)))
         if name == "irq_enable" and bus["bus_mask"] & 1:
@@ -250,12 +340,12 @@ class Agent:
         self.irq_pending = bool(start_screen or (self.irq_pending and not (name == "irq_pending" and ones & 1)))
         if name == "cycles" and bus["bus_mask"]:
             self.row = self.group = 0
-        elif inputs["progress_busy"]:
+        elif inputs["progress_busy"] and not self.config.facts.whole_frames:
             self.row = max(self.row, inputs["progress_row_cycles"])
             self.group = max(self.group, inputs["progress_group_cycles"])
         committing = name == "control" and bool(ones & 2)
         # A commit takes effect in the cycle in which the shadow is copied, too late for a StartScreen in that cycle.
-        self.commit = committing or bool(bus["bus_commit"]) or (self.commit and not start_screen)
+        self.commit = committing or bool(bus["bus_commit"]) or (self.commit and not go_live)
         accepted = not self.waiting
         self.waiting = False
         self.bus = bus | {"bus_commit": int(committing), "bus_write": int(accepted and inputs["avs_s0_write"])}
@@ -298,6 +388,14 @@ class LiveScene:
         return model.picture(
             screen, self.rectangles, self.camera, self.background, self.reflections, basis=self.basis, light=self.light
         )
+
+    def frame_cycles(self, config: Configuration) -> int:
+        """Return the cycles in which a design draws the scene into a list; see `raycaster.golden.frames`."""
+        screen = config.screen_geometry
+        model = SpanModel(
+            self.rectangles, self.camera, self.background, screen.columns, self.reflections, self.light
+        )  # fmt: skip
+        return cycles_of(model.rows(screen, self.basis), config)
 
 
 def read_live(config: Configuration, control: Word, background: Word, camera: CameraWords, table: Table) -> LiveScene:
@@ -388,6 +486,9 @@ class RegisterFile:
 
     Underrun is assumed not to happen. The renderer's measurements (`status.busy`, `cycles`) are not predicted: `busy`
     is ignored, `cycles` is checked against bounds.
+
+    With lists of frames, the model of a frame's time says when a frame is whole, and thereby when a scene goes live. A
+    list is assumed to hold its frame. `busy` and the registers `frames` are predicted.
     """
 
     def __init__(self, config: Configuration):
@@ -404,6 +505,11 @@ class RegisterFile:
         """Clocks since the end of reset, modulo a frame."""
         self.live: LiveScene | None = None
         """Scene that the last StartScreen since reset made live."""
+        self.shown: LiveScene | None = None
+        """Scene of the picture from the last StartScreen since reset on; None for black."""
+        self._switch = Switch()
+        self._cycle = self._whole = 0
+        """Clocks since reset, and the one in which the present frame is whole."""
         self._answered = ""
         self._least_cycles = (0, 0)
 
@@ -420,17 +526,22 @@ class RegisterFile:
         """
         agent, bus = self.agent, self.agent.bus
         start_screen = int(self.clocks == self.start_screen_clock)
+        switch, whole_frames = self._switch, self.config.facts.whole_frames
+        take_scene = start_screen and (not whole_frames or switch.state == "wait")
+        whole = switch.state == "draw" and self._cycle == self._whole
+        events = switch.events(bool(start_screen), whole, False, self._cycle) if whole_frames else NO_EVENTS
         word = self.table.words.get(bus["bus_address"])
         camera_word = self.camera.by_address.get(bus["bus_address"])
         inputs = {
             **bus,
             "reset": int(reset),
-            "bus_go_live": start_screen,
+            "bus_go_live": take_scene,
             "progress_start_screen": start_screen,
+            "progress_take_scene": take_scene,
             "camera_readback": camera_word.shadow if camera_word else 0,
             "rect_readback": word.shadow if word else 0,
             "bad_rectangle": 0,
-            "progress_busy": 0,
+            "progress_busy": int(switch.state != "wait"),
             "progress_underrun": 0,
             "avs_s0_address": request.address if request else 0,
             "avs_s0_read": int(request is not None and request.word is None),
@@ -449,14 +560,23 @@ class RegisterFile:
         self.table.clock(inputs)
         for address, word in self.camera.by_address.items():
             word.clock(inputs, bus["bus_address"] == address)
-        agent.clock(inputs)
+        agent.clock(inputs, events)
         if reset:
             for word in self.camera.values():
                 word.reset()
-            self.clocks, self.live, self._least_cycles = 0, None, (0, 0)
+            self.clocks, self.live, self.shown, self._least_cycles = 0, None, None, (0, 0)
+            self._cycle, self._switch = 0, Switch()
             return False
-        if start_screen:
+        if whole_frames:
+            if switch.state == "begin" and self.live and self.live.run:
+                self._whole = switch.began + self.live.frame_cycles(self.config)
+            switch.clock(bool(start_screen), bool(self.live and self.live.run), self.live, whole, False, self._cycle)
+            self.shown = switch.shown
+        if take_scene:
             self.live = read_live(self.config, self.agent.control, self.agent.background, self.camera, self.table)
+        if not whole_frames:
+            self.shown = self.live
+        self._cycle += 1
         self.clocks = (self.clocks + 1) % self._frame_cycles
         return taken
 
@@ -467,7 +587,7 @@ class RegisterFile:
             AssertionError: they differ; says which register was read.
         """
         expected, name = self.agent.answer[1], self._answered
-        if name == "cycles":
+        if name == "cycles" and not self.config.facts.whole_frames:
             cycles = self.agent.registers[name].unpack(word)
             most = (self.config.screen_geometry.row_cycles, engine_of(self.config).group_cycles(self.config))
             seen = (cycles["row"], cycles["group"])
@@ -475,6 +595,6 @@ class RegisterFile:
                 assert least <= value <= bound, f"cycles reads {cycles}; at least {self._least_cycles}, at most {most}"
             self._least_cycles = seen
             return
-        if name == "status":
+        if name == "status" and not self.config.facts.whole_frames:
             word &= ~self.agent.registers[name].fields["busy"].mask
         assert word == expected, f"{name} reads {word:#010x}, expected {expected:#010x}"

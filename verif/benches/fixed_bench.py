@@ -26,7 +26,7 @@ async def what_is_fixed_ignores_writes(bench: HierarchyObject) -> None:
     await harness.load(scene, asked)
     await harness.expect(scene, asked, "the scene")
     kept = 0 if everything else asked
-    await bus.commit(reflections=kept)
+    await harness.commit(reflections=kept)
     assert (await bus.read("control"))["reflections"] == kept
     mapped = {register.address: name for name, register in bus.registers.items()}
     for address in range(1 << bus.address_bits):

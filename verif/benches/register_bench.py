@@ -10,7 +10,9 @@ import numpy as np
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import ClockCycles
 
+from raycaster.golden.frames import scene_cycles
 from raycaster.rtl.engines import engine_of
+from raycaster.scene import Scene
 from raycaster.sim.harness import Harness
 from raycaster.sim.register_model import EVERY_LANE, SceneFollower
 from raycaster.verif.expected import check_cycles
@@ -24,7 +26,11 @@ async def every_byte_of_every_word(bench: HierarchyObject) -> None:
     """Randomly written bytes of the scene's words read back; other bits and unmapped addresses ignore writes."""
     harness = Harness(bench)
     bus, random, written = harness.bus, Random(seed()), SceneFollower(harness.configuration)
-    others = {bus.registers[name].address for name in NOT_OF_THE_SCENE}
+    others = {
+        register.address
+        for name, register in bus.registers.items()
+        if name in NOT_OF_THE_SCENE or name.startswith("frames.")
+    }
     addresses = sorted(set(range(1 << bus.address_bits)) - others)
     await harness.reset()
     for _ in range(3):
@@ -39,7 +45,7 @@ async def every_byte_of_every_word(bench: HierarchyObject) -> None:
 @cocotb.test()
 async def disabled_rectangles_cost_nothing(bench: HierarchyObject) -> None:
     """Each disabled rectangle, wherever it is in the table, saves a group the cycles of one rectangle; with culling,
-    those that were not already saved."""
+    those that were not already saved. With lists, frames take the time of the model."""
     harness = Harness(bench)
     bus, configuration, scene = harness.bus, harness.configuration, harness.scene
     kept = range(1, len(scene.rect), 3)
@@ -49,9 +55,11 @@ async def disabled_rectangles_cost_nothing(bench: HierarchyObject) -> None:
     await harness.reset()
     await harness.load(scene, reflections)
     await harness.expect(scene, reflections, "all rectangles")
+    all_frame = await frame_cycles(harness, scene)
     all_cycles = await bus.read("cycles")
     check_cycles(all_cycles, configuration)
-    if len(scene.rect) == configuration.rectangles and not (configuration.culling or configuration.light):
+    is_full = len(scene.rect) == configuration.rectangles and not configuration.facts.whole_frames
+    if is_full and not (configuration.culling or configuration.light):
         assert all_cycles["group"] == engine_of(configuration).group_cycles(configuration)
     await bus.write("cycles")
     assert await bus.read("cycles") == {"row": 0, "group": 0}, "a write clears the cycle counters"
@@ -59,13 +67,27 @@ async def disabled_rectangles_cost_nothing(bench: HierarchyObject) -> None:
     for index in range(len(scene.rect)):
         if index not in kept:
             await bus.write(f"rectangle[{index}].surface", enable=0, red=255)
-    await bus.commit(reflections=reflections)
+    await harness.commit(reflections=reflections)
     await harness.expect(few, reflections, "every third rectangle")
+    if configuration.facts.whole_frames:
+        assert await frame_cycles(harness, few) < all_frame
+        return
     few_cycles = await bus.read("cycles")
     saved = (len(scene.rect) - len(few.rect)) * (reflections + 1) * engine_of(configuration).rect_cycles(configuration)
     fallen = all_cycles["group"] - few_cycles["group"]
     assert 0 <= fallen <= saved if configuration.culling else fallen == saved, (all_cycles, few_cycles)
     assert (few_cycles["row"] < all_cycles["row"]) == (saved > 0)
+
+
+async def frame_cycles(harness: Harness, scene: Scene) -> int:
+    """Return the cycles of the last frame, which must be those of the model; 0 without lists."""
+    config = harness.configuration
+    if not config.facts.whole_frames:
+        return 0
+    seen = (await harness.bus.read("frames.cycles"))["cycles"]
+    expected = scene_cycles(scene, config, config.reflections)
+    assert seen == expected, f"a frame took {seen} cycles, expected {expected}"
+    return seen
 
 
 @cocotb.test()
@@ -86,6 +108,7 @@ async def bad_rectangle(bench: HierarchyObject) -> None:
     await bus.commit(reflections=scene.reflections)
     await ClockCycles(harness.bench.clk, 4)
     assert (await bus.read("status"))["bad_rectangle"] == 1
+    await harness.wait_for_frame()
     await harness.expect(scene, scene.reflections, "without the bad one")
     for cleared in (0, 1):
         await bus.write("status", bad_rectangle=cleared)
@@ -103,10 +126,10 @@ async def run_and_reflections(bench: HierarchyObject) -> None:
     await harness.bus.load_scene(scene)
     harness.expect_picture(await harness.monitor.frame(), black, "nothing committed")
     for asked in range(4):
-        await harness.bus.commit(reflections=asked)
+        await harness.commit(reflections=asked)
         await harness.expect(scene, min(asked, harness.configuration.reflections), f"{asked} reflections")
         if asked < 2:
-            await harness.bus.commit(run=0, reflections=asked)
+            await harness.commit(run=0, reflections=asked)
             harness.expect_picture(await harness.monitor.frame(), black, "run = 0")
 
 

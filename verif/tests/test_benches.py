@@ -40,7 +40,7 @@ DESIGNS = {
 """Simulator, design and scene."""
 
 SMALL = {bus: replace(TINY["seed"], bus=bus) for bus in (OWN, *BRIDGED)}
-STARTED = {**SMALL, "exact": TINY["exact"], "beam": TINY["beam"]}
+STARTED = {**SMALL, "exact": TINY["exact"], "span": TINY["span"]}
 """Designs that start with random registers, by bus or engine."""
 BUS_BENCH, TRAFFIC_BENCH = "verif.benches.bus_bench", "verif.benches.traffic_bench"
 GATED = {"CLOCK_GATING": 1}
@@ -73,21 +73,52 @@ def test_bench(bench: Bench, name: str, design: str):
     bench(f"verif.benches.{name}_bench", configuration, simulator, scene, seeds=seeds)
 
 
-@pytest.mark.slow_sets("beam-pairs", "exact", "icarus", "seed")
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("simulator", "options"),
     [
         pytest.param("verilator", {"units": 4}, id="seed"),
         pytest.param("verilator", {"engine": "exact", "units": 2}, id="exact"),
-        pytest.param("verilator", {"engine": "beam", "allow_underrun": False}, id="beam"),
-        pytest.param("verilator", {"engine": "beam", "pixels": 2, "allow_underrun": False}, id="beam-pairs"),
         pytest.param("icarus", {"units": 4, "rectangles": 3, "divider_bits": 1, "culling": False}, id="icarus"),
     ],
 )
 def test_underrun(bench: Bench, simulator: str, options: dict[str, Any]):
-    """Fewer units than the scene needs; the beam engine tests all rectangles at once and is never late."""
+    """Fewer units than the scene needs."""
     configuration = configure(**{"screen": "tiny", "allow_underrun": True} | options)
     bench("verif.benches.underrun_bench", configuration, simulator)
+
+
+@pytest.mark.slow_sets(quick=["tiny"])
+@pytest.mark.parametrize(
+    "options",
+    [
+        pytest.param({"screen": "tiny"}, id="tiny"),
+        pytest.param({"screen": "tiny", "list": 400}, id="full-list"),
+        pytest.param({"screen": "tiny", "reflections": 4, "units": 2, "turn": True, "pixels": 2}, id="pairs"),
+        pytest.param({"reflections": 4}, id="full-size"),
+    ],
+)
+def test_late_frames(bench: Bench, options: dict[str, Any]):
+    """A moving camera, and frames that take longer than a refresh: each picture is a whole earlier frame."""
+    bench("verif.benches.late_bench", configure(engine="span", **options), "verilator", FULL_SCENE)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("module", "right", "wrong", "complaint"),
+    [
+        ("frame_switch", "hands_over = take_scene && ready;", "hands_over = start_screen;", "pixels are wrong"),
+        ("frame_switch", "start_screen && (state == WAIT)", "start_screen", "commit reads"),
+        ("frame_registers", "if (events_again)", "if (events_drawn)", "frames.counts"),
+        ("frame_registers", "least <= 0;", "least <= 1;", "frames.left"),
+        ("avalon_interface", "else if (progress_take_scene)", "else if (progress_start_screen)", "commit reads"),
+    ],
+)
+def test_a_fault_with_late_frames_is_noticed(bench: Bench, tmp_path, module, right, wrong, complaint):
+    configuration = configure(engine="span", screen="tiny")
+    files = broken(convert(configuration, BUILD), tmp_path, module, right, wrong)
+    with pytest.raises(SimulationError, match=complaint):
+        bench("verif.benches.late_bench", configuration, "verilator", FULL_SCENE, verilog=files)
 
 
 @pytest.mark.parametrize(
@@ -95,11 +126,11 @@ def test_underrun(bench: Bench, simulator: str, options: dict[str, Any]):
     [
         ("seed", 2320, 232, True), ("seed", 1263, 205, True), ("seed", 1263, 0, False), ("seed", 0, 0, False),
         ("seed", 2321, 233, False), ("seed", 2320, 205, False), ("seed", 3200, 232, False),
-        ("beam", 640, 1, True), ("beam", 641, 1, False), ("beam", 639, 1, False), ("beam", 640, 0, False),
+        ("span", 0, 0, True), ("span", 1, 0, False), ("span", 0, 1, False),
     ],
 )  # fmt: skip
 def test_cycles_that_cannot_be(engine, row, group, right):
-    """The default design has 10 groups of at most 232 cycles, and 3,200 cycles per row; a line shows 640 pixels."""
+    """The default design has 10 groups of at most 232 cycles, and 3,200 cycles per row; with lists both read 0."""
     with contextlib.nullcontext() if right else pytest.raises(AssertionError):
         check_cycles({"row": row, "group": group}, configure(engine=engine))
 
@@ -121,7 +152,7 @@ def test_the_main_program_matches_cocotb(tmp_path: Path):
 
 @pytest.mark.slow_sets(quick=["axi4lite-icarus-seed", "wishbone-icarus-exact"])
 @pytest.mark.parametrize(
-    ("simulator", "engine"), [one for one in product(SIMULATORS, TINY) if one != ("icarus", "beam")]
+    ("simulator", "engine"), [one for one in product(SIMULATORS, TINY) if one != ("icarus", "span")]
 )
 @pytest.mark.parametrize("bus", BRIDGED)
 def test_bus(bench: Bench, bus, simulator, engine):
@@ -201,7 +232,7 @@ def test_icarus_takes_clocks_that_rest(bench: Bench):
     bench(TRAFFIC_BENCH, SMALL[OWN], "icarus", seeds=(1,), defines=GATED)
 
 
-@pytest.mark.slow_sets(quick=["avalon-1", "axi4lite-1", "beam-1", "exact-1"])
+@pytest.mark.slow_sets(quick=["avalon-1", "axi4lite-1", "span-1", "exact-1"])
 @pytest.mark.parametrize(
     ("design", "start"), [(name, start) for name in STARTED for start in ((1, 2) if name in BRIDGED else (1, 2, 3, 4))]
 )

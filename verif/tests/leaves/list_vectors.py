@@ -197,44 +197,6 @@ class Collector:
 
 
 @dataclass
-class Switch:
-    """`frame_switch`, cycle by cycle. A frame is a picture; None is black."""
-
-    state: str = "wait"
-    ready: bool = True
-    drawn: object = None
-    shown: object = None
-    upper: bool = False
-    began: int = 0
-    ended: int = 0
-
-    def events(self, start_screen: bool, whole: bool, full: bool, cycle: int) -> dict[str, int | None]:
-        """Return the events of a cycle."""
-        hands_over = start_screen and self.state == "wait" and self.ready
-        drawing = self.state == "draw"
-        drawn, shown = drawing and whole, hands_over and self.drawn is not None
-        time = cycle - self.began if drawn else cycle - self.ended if shown else None
-        events = {"drawn": drawn, "shown": shown, "again": start_screen and not hands_over}
-        return events | {"late": start_screen and drawing, "list_full": drawing and full, "time": time}
-
-    def clock(self, start_screen: bool, run: bool, frame: object, whole: bool, full: bool, cycle: int) -> None:
-        """End a cycle; frame is the picture that is drawn if a frame begins in it."""
-        if self.state == "wait" and start_screen:
-            if self.ready:
-                self.upper, self.shown = not self.upper, self.drawn
-            self.state, self.ready, self.began = "begin", False, cycle
-        elif self.state == "begin":
-            self.drawn = frame if run else None
-            self.state, self.ready = ("draw", False) if run else ("wait", True)
-        elif self.state == "draw" and (whole or full):
-            self.state, self.ready, self.ended = "wait", whole, cycle
-
-    def reset(self) -> None:
-        """Start again, with a black frame that is whole."""
-        self.__init__()
-
-
-@dataclass
 class Unit:
     """A unit, which draws its rows at any pace."""
 

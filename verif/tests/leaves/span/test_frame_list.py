@@ -13,7 +13,6 @@ from list_vectors import (
     Collector,
     Dealer,
     Queue,
-    Switch,
     Unit,
     any_frame,
     list_screen,
@@ -27,6 +26,7 @@ from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import FrameEvents, Scan
 from raycaster.rtl.span.frame_list import frame_list
 from raycaster.rtl.span.lists import ListEntry
+from raycaster.sim.register_model import Switch
 
 COLUMNS, ROWS, ENTRIES = 8, 4, 18
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """`frame_switch`: frames in time, late ones, abandoned and black ones, with any number of cycles in between."""
 
-from list_vectors import Switch
 from vectors import named
 
 from raycaster.rtl.common.interfaces import FrameEvents
 from raycaster.rtl.span.frame_switch import frame_switch
+from raycaster.sim.register_model import Switch
 
 
 def test_frame_switch(leaf_of, random):
