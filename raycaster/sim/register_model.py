@@ -170,14 +170,16 @@ class Switch:
     began: int = 0
     ended: int = 0
 
-    def events(self, start_screen: bool, whole: bool, full: bool, cycle: int) -> dict[str, int | None]:
+    def events(self, start_screen: bool, whole: bool, full: bool, cycle: int) -> Mapping[str, int | None]:
         """Return the events of a cycle, as in `FrameEvents`."""
         hands_over = start_screen and self.state == "wait" and self.ready
         drawing = self.state == "draw"
         drawn, shown = drawing and whole, hands_over and self.drawn is not None
         time = cycle - self.began if drawn else cycle - self.ended if shown else None
-        events = {"drawn": drawn, "shown": shown, "again": start_screen and not hands_over}
-        return events | {"late": start_screen and drawing, "list_full": drawing and full, "time": time}
+        again, late = start_screen and not hands_over, start_screen and drawing
+        return {
+            "drawn": drawn, "shown": shown, "again": again, "late": late, "list_full": drawing and full, "time": time,
+        }  # fmt: skip
 
     def clock(self, start_screen: bool, run: bool, frame: Any, whole: bool, full: bool, cycle: int) -> None:
         """End a cycle; frame is the picture that is drawn if a frame begins in it."""

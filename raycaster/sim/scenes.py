@@ -19,6 +19,7 @@ from typing import Any
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
+from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration
 from raycaster.convert.digest import verilog_digest
 from raycaster.design.for_scene import Design, left_out, packaged_for
@@ -32,6 +33,7 @@ from raycaster.design.options import (
 )
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
+from raycaster.golden.frames import runs_of, scene_rows
 from raycaster.output import MARK, Console, Table, check_replaceable, printable, put, remove, replaced
 from raycaster.rtl.engines import ENGINES, SEED
 from raycaster.runs.jobs import processes
@@ -71,9 +73,10 @@ COLUMNS: Mapping[str, str] = {
     "wrong": "pixels that differ from the golden model",
     "vs\nexact": "pixels that differ from the exact picture, for the engine that rounds",
     "frame": "clock cycles to render it",
-    "row\nused": "share of the available clock cycles that the slowest row or, with the span engine, the frame took",
+    "row\nused": "share of the available clock cycles that the slowest row took",
     "group\nused": "the same for the slowest group of columns",
     "alone\nHz": "frames per second of the renderer by itself",
+    "shown\nHz": "frames per second on the monitor, which shows a frame again for each refresh that the next one takes",
     "time\ns": "seconds in the simulator",
 }
 """Headings of the table, and what they mean."""
@@ -382,10 +385,36 @@ def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: 
 
 
 def _frames_per_second(configuration: Configuration, row_cycles: int) -> float:
-    """Pictures that could be computed per second; the beam engine computes each line of a doubled row."""
+    """Pictures that could be computed per second."""
     screen = configuration.screen_geometry
-    lines = screen.rows * (1 if configuration.facts.line_buffered else screen.doubling)
-    return screen.clock_hz / (lines * row_cycles)
+    return screen.clock_hz / (screen.rows * row_cycles)
+
+
+def shown_hz(configuration: Configuration, frame_cycles: int) -> str:
+    """Return the frames per second that a monitor shows if each takes this long, and how that comes from its refresh.
+
+    A frame that is whole in the clock of a refresh is too late for it.
+    """
+    screen = configuration.screen_geometry
+    refreshes, hz = frame_cycles // screen.frame_cycles + 1, screen.clock_hz / screen.frame_cycles
+    return f"{hz:.0f}" if refreshes == 1 else f"{hz:.0f}/{refreshes} = {hz / refreshes:.0f}"
+
+
+def check_list(run: Design) -> None:
+    """Check that a list holds a frame of the scene; without lists, do nothing.
+
+    Raises:
+        UserError: it does not; the design would never show the scene.
+    """
+    configuration = run.configuration
+    if not configuration.facts.whole_frames:
+        return
+    needed = runs_of(scene_rows(run.scene, configuration, run.reflections))
+    if needed > configuration.list:
+        raise UserError(
+            f"{run.path}: a frame has {needed:,} runs of one colour, but a list of the design holds "
+            f"{configuration.list:,}; take {as_typed('list', needed + needed % 2)} or more"
+        )
 
 
 def _cells(outcome: Outcome) -> list[str | Text]:
@@ -394,9 +423,9 @@ def _cells(outcome: Outcome) -> list[str | Text]:
         return [configuration.engine, Text("failed", "red")] + (len(COLUMNS) - 2) * [""]
     row, group, wrong = result["worst_row_cycles"], result["worst_group_cycles"], result["wrong_vs_golden"]
     screen, frame = configuration.screen_geometry, result["frame_cycles"]
+    shares, alone, shown = ["", ""], "", ""
     if configuration.facts.whole_frames:
-        shares = [f"{frame / screen.frame_cycles:.0%}", ""]
-        alone = f"{screen.clock_hz / frame:.0f}" if frame else ""
+        alone, shown = f"{screen.clock_hz / frame:.0f}", shown_hz(configuration, frame)
     else:
         shares = [f"{row / screen.row_cycles:.0%}", f"{group / configuration.group_budget:.0%}"]
         alone = f"{_frames_per_second(configuration, row):.0f}" if row else ""
@@ -408,13 +437,14 @@ def _cells(outcome: Outcome) -> list[str | Text]:
         shares[0],
         Text("underrun", "red") if result["underrun"] else shares[1],
         alone,
+        shown,
         f"{result['sim_seconds']:.2f}",
     ]
 
 
 def command_parser() -> CommandParser:
     """Make the command's parser."""
-    parser = CommandParser("sim", __doc__, "mirror_room --engine beam")
+    parser = CommandParser("sim", __doc__, "mirror_room --engine span")
     add_scene_argument(parser, "scenes to show (default: all packaged ones)", many=True)
     add_simulator_option(parser)
     parser.add_argument(
@@ -452,8 +482,8 @@ def _planned(arguments: argparse.Namespace, console: Console) -> list[Design]:
             console.print(f"left out, as each {reason}: {', '.join(names)}", soft_wrap=True)
     small = dict(GATES_OPTIONS) if gates else {}
     engine = ENGINES.get(options.get("engine", ""))
-    if engine is not None and not engine.facts.line_buffered:
-        small.pop("units", None)  # such an engine has one per pixel of a clock
+    if engine is not None and engine.facts.whole_frames:
+        small.pop("units", None)  # one unit of such an engine shows all scenes
     return plan_runs(paths, options, small, arguments.fix, console)
 
 
@@ -480,6 +510,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     outputs = output_directory(arguments.build, [*engines], told, "gates" if gates else "sim")
     for run in runs:
         check_replaceable(outputs / run.name)
+        check_list(run)
     find_tool(arguments.simulator)
     if gates:
         find_yosys()

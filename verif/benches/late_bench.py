@@ -92,7 +92,7 @@ async def late_frames(bench: HierarchyObject) -> None:
                 if number == 0 or name == "camera":
                     await bus.write(name, **fields)
             await bus.commit(reflections=reflections)
-        cycle = (get_sim_time("ns") - released_ns) // CLOCK_NS
+        cycle = int(get_sim_time("ns") - released_ns) // CLOCK_NS
         assert number or cycle + READING < timeline.start_cycle, "the first StartScreen comes too early"
         takes = timeline.start_screen(pending)
         seen = await harness.monitor.frame()
@@ -101,7 +101,7 @@ async def late_frames(bench: HierarchyObject) -> None:
         black = harness.golden_live(None)
         harness.expect_picture(seen, black if frame is None else harness.golden(frame, reflections), what)
         shown.append(frame and frame.camera.position)
-        cycle = (get_sim_time("ns") - released_ns) // CLOCK_NS
+        cycle = int(get_sim_time("ns") - released_ns) // CLOCK_NS
         timeline.go_to(cycle)
         if timeline.is_quiet(cycle):
             for name, fields in timeline.counts.fields().items():

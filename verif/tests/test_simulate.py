@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
 import threading
@@ -10,13 +11,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from conftest import FLOOR_SCENE, PATTERNED_SCENE, ROOT, SMALL_SCENE, TURNED_SCENE, called
+from conftest import FLOOR_SCENE, PATTERNED_SCENE, ROOT, SMALL_SCENE, TURNED_SCENE, called, refusal
 from PIL import Image
 
 from raycaster.configuration import FEATURES
 from raycaster.design.decide import OPTIONS as DESIGN_OPTIONS
 from raycaster.design.decide import configure
 from raycaster.design.for_scene import design_for, left_out, packaged_for
+from raycaster.errors import UserError
 from raycaster.output import Console, emptied, replaced
 from raycaster.scene import packaged_scenes
 from raycaster.sim import scenes as simulate
@@ -80,7 +82,7 @@ def test_pictures_of_another_screen_or_engine_are_kept_apart():
     for expected, engines, options in (
         ("sim", ["seed", "exact"], {}),
         ("sim-seed", ["seed"], {"units": 8, "bus": "apb"}),
-        ("sim-beam-180", ["beam"], {"engine": "beam", "rows": 180}),
+        ("sim-span-180", ["span"], {"engine": "span", "rows": 180}),
         ("sim-exact-tiny", ["exact"], {"screen": "tiny"}),
         ("sim-seed-reflections-0-rectangles-20", ["seed"], {"reflections": 0, "rectangles": 20}),
         ("sim-seed-fraction-bits-3-rounding-nearest", ["seed"], {"fraction_bits": 3, "rounding": "nearest"}),
@@ -94,10 +96,11 @@ def test_pictures_of_another_screen_or_engine_are_kept_apart():
 @pytest.mark.parametrize(
     ("options", "reason", "among"),
     [
-        ({"engine": "beam"}, "needs a light: the beam engine casts no shadows", {"lamplight"}),
+        ({"engine": "span", "light": "0"}, "needs a light", {"lamplight"}),
         ({"engine": "seed"}, "needs a camera that turns: the seed engine measures depth", {"pool"}),
         ({"patterns": "0"}, "needs rectangles with patterns", {"chessboard"}),
         ({"engine": "exact"}, "", set()),
+        ({"engine": "span"}, "", set()),
     ],
 )
 def test_scenes_that_are_left_out_have_a_reason(options, reason, among):
@@ -106,6 +109,27 @@ def test_scenes_that_are_left_out_have_a_reason(options, reason, among):
     names = {name for said, listed in found.items() if said.startswith(reason) for name in listed}
     assert among <= names and not names & {path.stem for path in packaged_for(options)}
     assert len(packaged_for(options)) + sum(map(len, found.values())) == len(packaged_scenes())
+
+
+def test_a_list_that_is_too_short_is_refused(tmp_path):
+    """Before anything is built, with the length that the scene needs, which is enough."""
+    words = (str(SMALL_SCENE), "ENGINE=span", "SCREEN=tiny")
+    said = refusal(tmp_path, "sim", *words, "LIST=98")
+    found = re.search(r"small\.toml: a frame has [\d,]+ runs .*, but a list .* 98; take .*\D(\d+) or more$", said)
+    assert found, said
+    enough = found[1]
+    for entries, right in ((int(enough), True), (int(enough) - 2, False)):
+        with contextlib.nullcontext() if right else pytest.raises(UserError):
+            simulate.check_list(design_for(SMALL_SCENE, {"engine": "span", "screen": "tiny", "list": entries}))
+
+
+@pytest.mark.parametrize(
+    ("cycles", "said"),
+    [(1, "60"), (419999, "60"), (420000, "60/2 = 30"), (839999, "60/2 = 30"), (840000, "60/3 = 20")],
+)
+def test_frames_per_second_on_the_monitor(cycles, said):
+    """640x480 has 800 x 525 clocks per refresh, 59.5 times per second."""
+    assert simulate.shown_hz(configure(engine="span"), cycles) == said
 
 
 def test_an_interrupted_run_leaves_the_pictures(tmp_path, monkeypatch):
@@ -161,7 +185,7 @@ def test_a_scene_chooses_what_it_needs(tmp_path):
     assert chosen(FLOOR_SCENE) == ("seed", ())
     assert chosen(FLOOR_SCENE, engine="exact", turn="1") == ("exact", ("turn",))
     assert chosen(TURNED_SCENE) == ("exact", ("turn",))
-    assert chosen(TURNED_SCENE, engine="beam") == ("beam", ("turn",))
+    assert chosen(TURNED_SCENE, engine="span") == ("span", ("turn",))
     assert chosen(PATTERNED_SCENE) == ("seed", ("patterns",))
     assert chosen(TURNED_SCENE + "mirror = 0") == ("exact", ("turn", "materials"))
 
