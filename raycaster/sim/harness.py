@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 from cocotb.handle import HierarchyObject
-from cocotb.triggers import FallingEdge, RisingEdge
+from cocotb.triggers import FallingEdge, RisingEdge, Timer
 
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
@@ -107,7 +107,8 @@ class Harness(Viewer):
         if not self.configuration.facts.whole_frames:
             return
         while (await self.bus.read("control"))["commit"] or (await self.bus.read("status"))["busy"]:
-            await self.monitor.line()
+            self.monitor.rest()
+            await Timer(self.screen.line_cycles * CLOCK_NS, "ns")
         self.monitor.forget()
 
     async def reset(self) -> None:

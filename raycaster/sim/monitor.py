@@ -68,7 +68,7 @@ class Monitor:
         self._patience_ns = 3 * self._screen.line_cycles * CLOCK_NS
         self._lines: Queue[Line | None] = Queue()
         self._waiting_since: int | None = None
-        self._synchronised = False
+        self._synchronised = self._rests = False
         self.frame_lines: list[Line] = []
         """The lines of the last frame, from VS's leading edge on."""
         cocotb.start_soon(self._collect())
@@ -78,6 +78,8 @@ class Monitor:
         sink = self._sink
         while True:
             await sink.line_event.value_change
+            if self._rests:
+                continue
             line = Line(str(sink.line.value), int(sink.line_samples.value), int(get_sim_time("ns")))
             self._lines.put_nowait(line)
 
@@ -89,8 +91,13 @@ class Monitor:
             if since is not None and get_sim_time("ns") - since >= self._patience_ns:
                 self._lines.put_nowait(None)
 
+    def rest(self) -> None:
+        """Look at no line until `forget`, as reading them takes long."""
+        self._rests = True
+
     def forget(self) -> None:
         """Drop all that was seen so far and search for VS again, as after a reset."""
+        self._rests = False
         while not self._lines.empty():
             self._lines.get_nowait()
         self._synchronised = False

@@ -44,7 +44,7 @@ MAP = register_map(CONFIG.rectangles)
 EVERYTHING = configure(engine="exact", screen="tiny", **dict.fromkeys(EXACT.facts.features, True))
 """Design with all features that scenes may need."""
 
-LARGE = configure(engine="span", screen="tiny", rectangles=32)
+LARGE = configure(engine="exact", screen="tiny", units=64, rectangles=32)
 RESERVED_CODE = 2
 """Code in the register `engine` that stands for no engine any more, and never for another one."""
 
