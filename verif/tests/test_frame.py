@@ -12,7 +12,7 @@ import pytest
 from conftest import SMALL_SCENE, Bench
 from PIL import Image
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import FEATURES, Configuration
 from raycaster.design.decide import configure
 from raycaster.design.for_scene import design_for, packaged_for
 from raycaster.fit.fixing import fix
@@ -23,6 +23,7 @@ from raycaster.sim.simulator import UNGATED_FLAGS
 from raycaster.verif.seeds import seed
 
 PLAIN = packaged_scenes(plain=True)
+EVERY_LOOK = dict.fromkeys(FEATURES, True)
 
 
 def drawn(bench: Bench, design: Configuration, scene: Path) -> tuple[dict, Path]:
@@ -69,7 +70,7 @@ def test_a_hundred_scenes(bench: Bench, engine):
     bench("verif.soak.bench", design, "verilator", seeds=tuple(range(first, first + 100)), flags=UNGATED_FLAGS)
 
 
-@pytest.mark.slow_sets("beam", "seed")
+@pytest.mark.slow_sets("exact", "seed")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_every_scene(bench: Bench, engine):
     """Every packaged scene on the tiny screen, edge cases included, drawn by one design per engine."""
@@ -88,22 +89,21 @@ def test_every_scene(bench: Bench, engine):
     ("rows", "scale", "pixels", "shown"),
     [(240, 1, 1, 640 * 480), (200, 2, 1, 640 * 400), (180, 4, 1, 1280 * 720), (180, 6, 2, 1920 * 1080)],
 )
-def test_full_size_beam(bench: Bench, rows, scale, pixels, shown):
-    """The room as `make sim ENGINE=beam` shows it: doubled, native, 720 lines, and 1080 with two pixels per clock."""
-    design, scene = configure(engine="beam", rows=rows, scale=scale, pixels=pixels), PLAIN["mirror_room"]
+def test_full_size_span(bench: Bench, rows, scale, pixels, shown):
+    """The room as `make sim ENGINE=span` shows it: doubled, native, 720 lines, and 1080 with two pixels per clock."""
+    design = configure(engine="span", rows=rows, scale=scale, pixels=pixels, units=scale)
+    scene = PLAIN["mirror_room"]
     result, directory = drawn(bench, design, scene)
     assert result["pixels"] == shown
-    assert result["worst_row_cycles"] == design.screen_geometry.horizontal.visible // pixels
-    assert result["worst_group_cycles"] == 1
     # The finer picture samples the same view, so it contains every pixel of the coarse one.
-    coarse = ExactModel().render(load_scene(scene), configure(engine="beam", rows=rows, scale=1).screen_geometry)
+    coarse = ExactModel().render(load_scene(scene), configure(engine="span", rows=rows, scale=1).screen_geometry)
     step = design.screen_geometry.horizontal.visible // 320
     assert np.array_equal(np.asarray(Image.open(directory / "frame.png"))[::step, ::step], coarse)
 
 
 @pytest.mark.slow_sets(
     quick=[
-        "engine=beam-reflections=0",
+        "engine=span-reflections=0",
         "engine=exact-reflections=0",
         "engine=exact-reflections=4-materials",
         "units=2-",
@@ -127,16 +127,15 @@ def test_full_size_beam(bench: Bench, rows, scale, pixels, shown):
         {"engine": "exact", "reflections": 0, "rectangles": 1, "colour_bits": 4},
         {"engine": "exact", "reflections": 0, "light": True},
         {"engine": "exact", "reflections": 4, "light": True, "culling": True},
-        {"engine": "exact", "reflections": 2, "light": True, "turn": True, "materials": True, "patterns": True},
+        {"engine": "exact", "reflections": 2, **EVERY_LOOK},
         {"engine": "exact", "rectangles": 32, "units": 16},
-        {"engine": "beam", "reflections": 2, "scale": 1},
-        {"engine": "beam", "reflections": 3, "materials": True, "scale": 1},
-        {"engine": "beam", "reflections": 4, "scale": 1},
-        {"engine": "beam", "reflections": 4, "turn": True, "patterns": True, "materials": True, "scale": 1},
-        {"engine": "beam", "reflections": 0, "rectangles": 1, "colour_bits": 4},
-        {"engine": "beam", "rectangles": 32},
-        {"engine": "beam", "rectangles": 1, "reflections": 0, "colour_bits": 5, "pixels": 2},
-        {"engine": "beam", "reflections": 2, "turn": True, "patterns": True, "pixels": 2},
+        {"engine": "span", "reflections": 3, "materials": True, "scale": 1},
+        {"engine": "span", "reflections": 4, "scale": 1, "units": 2},
+        {"engine": "span", "reflections": 4, **EVERY_LOOK, "scale": 1},
+        {"engine": "span", "reflections": 0, "rectangles": 1, "colour_bits": 4},
+        {"engine": "span", "rectangles": 32, "units": 5},
+        {"engine": "span", "rectangles": 1, "reflections": 0, "colour_bits": 5, "pixels": 2},
+        {"engine": "span", "reflections": 2, "turn": True, "patterns": True, "pixels": 2, "units": 3},
     ],
     ids=lambda options: "-".join(f"{name}={value}" for name, value in options.items()),
 )
