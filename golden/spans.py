@@ -284,7 +284,7 @@ class Drawing:
 
     def __init__(self, model: SpanModel, slope: Rays):
         self.model, self.slope, self.result, self.now = model, slope, Row(), 0
-        self.division = (model.columns - 1).bit_length() + 1
+        self.division = 1 + ((model.columns - 1).bit_length() + 1) // 2
         """Cycles of a division."""
         self.shown: list[Surface] = []
         """Surfaces seen at each level, up to the present one."""
@@ -480,22 +480,21 @@ class Drawing:
         entries = []
         # The slope's components are asked for, one per cycle.
         hand = self.now + 3 + ANSWER + 1
-        accepted, issued, freed = hand, hand, [0, 0]
+        accepted, issued = hand, 0
         for rect in self.model.table:
             lines = self.half_lines(chain, rect, rays, ahead)
             if not lines:
                 hand += 1
                 continue
             self.result.steps["rectangles"] += 1
-            # The line before has been asked, and a slot is free.
-            accepted = max(hand, issued, freed[0] + 1)
+            # The line before has been asked.
+            accepted = max(hand, issued)
             issued, hand = accepted + len(lines), accepted + 1
-            answered = max(issued + ANSWER + 1, freed[1] + 1)
-            start, stop, cycles = self.clip(chain, lines.values())
-            freed = [freed[1], answered + cycles]
+            start, stop = self.clip(chain, lines.values())
             if start < stop:
                 entries.append(Entry(rect, start, stop, *self.approach(chain, rect, rays)))
-        self.now = max(hand, issued + 1 if freed[1] else 0, freed[1] + 1) + 2
+        # Each line passes the divider.
+        self.now = max(hand, issued + ANSWER + self.division + 2 if issued else 0) + 1
         self.result.steps["entries"] += len(entries)
         return entries
 
@@ -535,22 +534,21 @@ class Drawing:
         ends = [(line.at(chain.start), line.at(chain.stop - 1)) for line in self.slope]
         return all(min(left, right) <= 0 <= max(left, right) for left, right in ends)
 
-    def clip(self, chain: Chain, lines: Iterable[Line]) -> tuple[int, int, int]:
-        """Return the columns in which all lines are not negative, and the cycles that it takes to find them."""
-        start, stop, cycles = chain.start, chain.stop, 0
+    def clip(self, chain: Chain, lines: Iterable[Line]) -> tuple[int, int]:
+        """Return the columns in which all lines are not negative."""
+        start, stop = chain.start, chain.stop
         ends = [(line.at(start), line.at(stop - 1), line.growth) for line in lines]
         if any(left < 0 and right < 0 for left, right, _ in ends):
-            return start, start, 0
+            return start, start
         for left, right, growth in ends:
-            if (left < 0) != (right < 0) and start < stop:
+            if (left < 0) != (right < 0):
                 border = chain.start + first_change(left, growth)
                 self.result.steps["divisions"] += 1
-                cycles += self.division + 1
                 if left < 0:
                     start = max(start, border)
                 else:
                     stop = min(stop, border)
-        return start, stop, cycles
+        return start, stop
 
     # -- The sweep
 

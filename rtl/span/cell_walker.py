@@ -133,7 +133,7 @@ def cell_walker(
 
     asked = asks.query.joined(
         from_light=none, left=column, right=last, strict=none, axis_1=axis_1, back_1=back_1, factor_1=factor_1,
-        axis_2=grid.axis, back_2=grid.back, factor_2=factor_2, half_line=none, last=none, slot=none,
+        axis_2=grid.axis, back_2=grid.back, factor_2=factor_2, half_line=none, last=none,
         number=asked_number,
     )  # fmt: skip
 

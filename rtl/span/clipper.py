@@ -1,180 +1,145 @@
 # SPDX-License-Identifier: MIT
-"""The columns in which the rays of a chain meet a rectangle."""
+"""The columns in which a rectangle is met."""
 
-from myhdl import Signal, always, always_comb, block, concat, enum, instances
+from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.signals import bit, bits_for, unsigned
 from raycaster.rtl.common.widths import column_bits
-from raycaster.rtl.span.records import NUMBER_BITS, Division, Entry
+from raycaster.rtl.span.first_change import division_cycles
+from raycaster.rtl.span.line_eval import LATENCY
+from raycaster.rtl.span.records import BEYOND, U_LOW, Entry
 
-ClipState = enum("LOOK", "DIVIDE")
+FEWEST_LINES = BEYOND - U_LOW
+"""Half-lines of a rectangle that a chain's rays may meet: its bounds."""
 
-SLOTS = 2
+
+def places(config: Configuration) -> int:
+    """Places for rectangles that are on their way from their opening to their end; one stays free."""
+    most = 2 + (LATENCY + division_cycles(config) + 2) // FEWEST_LINES
+    return 1 << bits_for(most + 1)
 
 
 @block
-def clipper(clk, reset, chain, opened, slot, met, asks, answer, free, append, entry, idle, config: Configuration):
+def clipper(clk, reset, chain, opened, met, asks, answer, append, entry, idle, config: Configuration):
     """Find the columns of a chain in which all half-lines of a rectangle are not negative; append an entry if any.
 
-    A line that is negative at both ends of the chain rejects the rectangle. A line whose sign changes costs a division,
-    one after the other in the order of their numbers, until no column is left. While one rectangle's lines are divided,
-    those of the next one are answered: there are two slots, which take turns.
+    Each line passes the divider, so that nothing ever waits: a line that is negative at both ends of the chain rejects
+    the rectangle, and one whose sign changes narrows its columns.
 
     Args:
         clk: the clock.
-        reset: flag; synchronous reset, which empties both slots.
-        chain: `Chain`; start and stop are read, constant while slots are in use, and in the cycle before.
-        opened: strobe; the answers of a rectangle follow, the last one marked by answer.last.
-        slot: flag; read with opened: the slot for that rectangle. The first one after reset is 0, and they take turns.
+        reset: flag; synchronous reset, which forgets all rectangles.
+        chain: `Chain`; start and stop are read, constant while not idle, and in the cycle before.
+        opened: strobe; the answers of a rectangle follow, the last one marked by answer.last, after those of the one
+            before. It has at least `FEWEST_LINES`, and they are asked for one per cycle from the next cycle on.
         met: `Entry`, whose start and stop are ignored; read with opened.
         asks: output `Asks`; only divide and division are driven.
         answer: `Answer`.
-        free: output flag; the slot is free.
         append: output strobe; the rectangle is met in some columns.
         entry: output `Entry`; valid with append.
-        idle: output flag; both slots are free.
+        idle: output flag; all rectangles have been appended or rejected.
         config: the design.
     """
-    width = column_bits(config)
-    numbers = 1 << NUMBER_BITS
+    width, cycles, count = column_bits(config), division_cycles(config), places(config)
+    flags = 4
 
-    state = Signal(ClipState.LOOK)
-    pending, complete, rejected = (unsigned(SLOTS) for _ in range(3))
-    crossings = unsigned(SLOTS * numbers)
-    remaining = unsigned(numbers)
-    turn, known, refused, over, crossing, negative, change = (bit() for _ in range(7))
-    place, asked = unsigned(NUMBER_BITS + 1), unsigned(NUMBER_BITS + 1)
-    lowest = unsigned(NUMBER_BITS)
-    start, stop, border = (unsigned(width) for _ in range(3))
-    rises = bit()
-    entries = [unsigned(len(met.word)) for _ in range(SLOTS)]
-    in_turn = Entry(config)
-    kept = [unsigned(len(asks.division.word)) for _ in range(SLOTS * numbers)]
-    line = Division(config)
+    on_way = unsigned(flags * cycles)
+    judged = unsigned(flags)
+    negative, change, first_negative = (bit() for _ in range(3))
+    last, refuses, narrows, rises = (bit() for _ in range(4))
+    ended, refused, renewed = bit(), bit(), bit()
+    start, stop, low, high, border = (unsigned(width) for _ in range(5))
+    put, taken = unsigned(bits_for(count)), unsigned(bits_for(count))
+    entries = [unsigned(len(met.word)) for _ in range(count)]
+    oldest = Entry(config)
 
     @always_comb
     def judge():
-        negative.next = answer.left < 0 and answer.right < 0
+        first_negative.next = answer.left < 0
+        negative.next = (answer.left < 0) and (answer.right < 0)
         change.next = (answer.left < 0) != (answer.right < 0)
-        place.next = concat(answer.slot, answer.number)
-
-    answered = line.joined(value=answer.left, growth=answer.growth)
-
-    @always(clk.posedge)
-    def keep_line():
-        if answer.valid and answer.half_line and change:
-            kept[place].next = answered
-
-    @always(clk.posedge)
-    def keep_entry():
-        if opened:
-            entries[slot].next = met.word
 
     @always_comb
-    def see_slot():
-        remaining.next = crossings[numbers:]
-        known.next = complete[0]
-        refused.next = rejected[0]
-        in_turn.word.next = entries[0]
-        if turn:
-            remaining.next = crossings[:numbers]
-            known.next = complete[1]
-            refused.next = rejected[1]
-            in_turn.word.next = entries[1]
-        free.next = not pending[slot]
-        idle.next = pending == 0
+    def see_line():
+        judged.next = 0
+        if answer.valid and answer.half_line:
+            judged.next = concat(answer.last, negative, change, first_negative)
 
-    @always_comb
-    def choose_line():
-        lowest.next = 0
-        for i in range(numbers - 1, -1, -1):
-            if remaining[i]:
-                lowest.next = i
-
-    @always_comb
-    def address():
-        asked.next = concat(turn, lowest)
-
-    @always_comb
-    def decide():
-        over.next = (state == ClipState.LOOK) and known and (refused or start >= stop or remaining == 0)
-        crossing.next = (state == ClipState.LOOK) and known and not (refused or start >= stop or remaining == 0)
+    # All other lines are divided for nothing.
+    divided = asks.division.joined(value=answer.left, growth=answer.growth)
 
     @always_comb
     def start_division():
-        line.word.next = kept[asked]
-        asks.divide.next = crossing
+        asks.divide.next = answer.valid and answer.half_line
+        asks.division.word.next = divided
+
+    @always(clk.posedge)
+    def follow():
+        on_way.next = 0
+        if not reset:
+            on_way.next = concat(on_way[flags * (cycles - 1) :], judged)
 
     @always_comb
-    def show_division():
-        asks.division.word.next = line.word
-
-    @always(clk.posedge)
-    def advance():
-        if reset:
-            state.next = ClipState.LOOK
-        elif crossing:
-            state.next = ClipState.DIVIDE
-        elif answer.divided:
-            state.next = ClipState.LOOK
-
-    @always(clk.posedge)
-    def use_slots():
-        if reset:
-            pending.next = 0
-            complete.next = 0
-            turn.next = False
-        else:
-            if opened:
-                pending.next[slot] = True
-            if answer.valid and answer.half_line and answer.last:
-                complete.next[answer.slot] = True
-            if over:
-                pending.next[turn] = False
-                complete.next[turn] = False
-                turn.next = not turn
-
-    @always(clk.posedge)
-    def note():
-        if opened:
-            rejected.next[slot] = False
-            if slot:
-                crossings.next[:numbers] = 0
-            else:
-                crossings.next[numbers:] = 0
-        if answer.valid and answer.half_line:
-            if negative:
-                rejected.next[answer.slot] = True
-            if change:
-                crossings.next[place] = True
-        if crossing:
-            crossings.next[asked] = False
+    def see_flags():
+        last.next = on_way[flags * cycles - 1]
+        refuses.next = on_way[flags * cycles - 2]
+        narrows.next = on_way[flags * cycles - 3]
+        rises.next = on_way[flags * cycles - 4]
 
     @always_comb
-    def find_edge():
+    def begin():
+        renewed.next = idle or ended
+        low.next = start
+        high.next = stop
+        if idle or ended:
+            low.next = chain.start
+            high.next = chain.stop
+
+    @always_comb
+    def find_border():
         border.next = (chain.start + answer.columns) % (1 << width)
 
     @always(clk.posedge)
     def clip():
-        if over or (pending == 0):
-            start.next = chain.start
-            stop.next = chain.stop
-        elif answer.divided and (state == ClipState.DIVIDE):
-            if rises and (border > start):
+        ended.next = last and not reset
+        refused.next = refuses or (refused and not renewed)
+        start.next = low
+        stop.next = high
+        if narrows:
+            if rises and (border > low):
                 start.next = border
-            elif (not rises) and (border < stop):
+            elif (not rises) and (border < high):
                 stop.next = border
-        if crossing:
-            rises.next = line.value < 0
-
-    found = entry.joined(
-        index=in_turn.index, axis=in_turn.axis, back=in_turn.back, distance=in_turn.distance, start=start, stop=stop
-    )
 
     @always(clk.posedge)
+    def keep():
+        if opened:
+            entries[put].next = met.word
+
+    @always(clk.posedge)
+    def count_entries():
+        if reset:
+            put.next = 0
+            taken.next = 0
+        else:
+            if opened:
+                put.next = (put + 1) % count
+            if ended:
+                taken.next = (taken + 1) % count
+
+    @always_comb
+    def look_up():
+        idle.next = put == taken
+        oldest.word.next = entries[taken]
+
+    found = entry.joined(
+        index=oldest.index, axis=oldest.axis, back=oldest.back, distance=oldest.distance, start=start, stop=stop
+    )
+
+    @always_comb
     def present():
-        append.next = over and (not refused) and (start < stop) and not reset
+        append.next = ended and (not refused) and (start < stop)
         entry.word.next = found
 
     return instances()

@@ -59,7 +59,7 @@ def corner_finder(
 
     asked = asks.query.joined(
         from_light=none, left=column, right=last, strict=none, axis_1=chain.axis, back_1=chain.back, factor_1=to_winner,
-        axis_2=winner.axis, back_2=winner.back, factor_2=to_mirror, half_line=none, last=none, slot=none,
+        axis_2=winner.axis, back_2=winner.back, factor_2=to_mirror, half_line=none, last=none,
         number=no_number,
     )  # fmt: skip
 

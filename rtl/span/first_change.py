@@ -1,52 +1,57 @@
 # SPDX-License-Identifier: MIT
 """The column at which a line's sign changes."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import bit, bits_for, unsigned
+from raycaster.hdl.signals import bits_for, unconnected, unsigned
 from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.widths import divisor_bits, line_bits
-from raycaster.rtl.engine.divider_step import divider_step
+from raycaster.rtl.span.division_stage import division_stage
+
+STAGE_BITS = 2
+"""Quotient bits of a stage."""
 
 
 def quotient_bits(config: Configuration) -> int:
-    """Width of a quotient, and cycles of a division: a change lies within the screen's columns."""
+    """Width of a quotient: a change lies within the screen's columns."""
     return bits_for(config.screen_geometry.columns)
+
+
+def division_cycles(config: Configuration) -> int:
+    """Return the cycles of a division, from a line to the column of its change."""
+    return -(-quotient_bits(config) // STAGE_BITS) + 1
 
 
 @block
 def first_change(clk, reset, start, division, columns, done, config: Configuration):
-    """Count the columns up to the first one at which a line's sign differs, a quotient bit per cycle.
+    """Count the columns up to the first one at which a line's sign differs; a new line per cycle.
 
     With f the value and g the growth it is 1 + floor(y / |g|), y = f if f >= 0 and -f - 1 otherwise: one formula for
-    lines that rise and lines that fall. The quotient must be less than the number of columns.
+    lines that rise and lines that fall. If the quotient is not less than the number of columns, columns is don't care.
 
     Args:
         clk: the clock.
-        reset: flag; synchronous reset, which ends a division.
+        reset: flag; synchronous reset, which ends all divisions.
         start: strobe; takes the line.
         division: `Division`; read with start.
-        columns: unsigned output, `column_bits` bits; valid from done up to the next start.
-        done: output strobe, `quotient_bits` + 1 cycles after start.
+        columns: unsigned output, `column_bits` bits; valid with done.
+        done: output strobe, `division_cycles` after start.
         config: the design.
     """
-    steps, width = quotient_bits(config), divisor_bits(config) - 1
-    value_bits = line_bits(config)
-    top = steps + width
+    bits, cycles, width = quotient_bits(config), division_cycles(config), divisor_bits(config) - 1
+    value_bits, stages = line_bits(config), division_cycles(config) - 1
+    top = bits + width
 
-    size = unsigned(width)
     # The highest bits are 0 if the quotient is as small as it must be.
     y = unsigned(max(value_bits, top + 1))
-    remainder, next_remainder, divisor = (unsigned(width) for _ in range(3))
-    digits, next_digits = unsigned(steps), unsigned(steps)
-    left = unsigned(bits_for(steps + 1))
-    ending = bit()
+    under_way = unsigned(cycles)
+    # Before each stage, and after the last one.
+    remainders, divisors = ([*(unsigned(width) for _ in range(stages)), unconnected(width)] for _ in range(2))
+    digits = [unsigned(bits) for _ in range(stages + 1)]
+    first_remainder, first_digits, size, quotient = remainders[0], digits[0], divisors[0], digits[stages]
 
     absolute = magnitude(division.growth, size)
-    step = divider_step(
-        remainder=remainder, digits=digits, divisor=divisor, next_remainder=next_remainder, next_digits=next_digits
-    )
 
     @always_comb
     def complement():
@@ -54,33 +59,33 @@ def first_change(clk, reset, start, division, columns, done, config: Configurati
         if division.value < 0:
             y.next = ~division.value[value_bits - 1 :]
 
+    @always_comb
+    def split():
+        first_remainder.next = y[top:bits]
+        first_digits.next = y[bits:]
+
+    # The last stage has what is left of the bits.
+    divide = [
+        division_stage(
+            clk=clk, remainder=remainders[i], digits=digits[i], divisor=divisors[i], next_remainder=remainders[i + 1],
+            next_digits=digits[i + 1], next_divisor=divisors[i + 1],
+            steps=min(STAGE_BITS, bits - i * STAGE_BITS),
+        )
+        for i in range(stages)
+    ]  # fmt: skip
+
     @always(clk.posedge)
-    def divide():
-        if start:
-            remainder.next = y[top:steps]
-            digits.next = y[steps:]
-            divisor.next = size
-        else:
-            remainder.next = next_remainder
-            digits.next = next_digits
+    def follow():
+        under_way.next = 0
+        if not reset:
+            under_way.next = concat(under_way[cycles - 1 :], start)
 
     @always_comb
     def see_end():
-        ending.next = left == 1
+        done.next = under_way[cycles - 1]
 
     @always(clk.posedge)
-    def count():
-        done.next = ending and not reset
-        if reset:
-            left.next = 0
-        elif start:
-            left.next = steps
-        elif left != 0:
-            left.next = left - 1
-
-    @always(clk.posedge)
-    def keep():
-        if ending:
-            columns.next = next_digits + 1
+    def show():
+        columns.next = (quotient + 1) % (1 << len(columns))
 
     return instances()

@@ -14,7 +14,7 @@ from raycaster.rtl.span.records import AHEAD, BEYOND, NUMBER_BITS, U_HIGH, U_LOW
 
 @block
 def half_lines(
-    clk, reset, start, chain, rects, from_light, asks, answer, free, done, slot, opened, entry, walked,
+    clk, reset, start, chain, rects, from_light, asks, answer, done, opened, entry, walked,
     config: Configuration,
 ):  # fmt: skip
     """Ask for the half-lines of each rectangle in the table's order, except of those that the rays cannot meet.
@@ -46,9 +46,7 @@ def half_lines(
         from_light: flag, read with `config.light`; the chain's rays come from the light. Constant from start to done.
         asks: output `Asks`; only ask and query are driven.
         answer: `Answer`.
-        free: flag; the slot is free for the next rectangle.
         done: strobe; all lines are answered and used, so the walk is over.
-        slot: output flag; the slot of the next rectangle, or of the one that is opened: they take turns.
         opened: output strobe; the lines of a rectangle follow.
         entry: output `Entry`, valid with opened; start and stop are 0.
         walked: output flag; all lines have been asked. Low before start.
@@ -71,7 +69,7 @@ def half_lines(
     flipped, fore_left_a, fore_right_a, aft_left_a, aft_right_a = (bit() for _ in range(5))
     point, back, ahead_left, ahead_right, skip, tested_ahead, ready, accept = (bit() for _ in range(8))
 
-    issuing, last, slot_1 = bit(), bit(), bit()
+    issuing, last = bit(), bit()
     number = unsigned(NUMBER_BITS)
     mirrors = config.reflections > 0
     last_number = unsigned(NUMBER_BITS) if mirrors else tied(V_HIGH, NUMBER_BITS)
@@ -205,7 +203,7 @@ def half_lines(
     def judge():
         skip.next = (n == 0) or not (ahead_left or ahead_right)
         tested_ahead.next = lit or ((ahead_left != ahead_right) and (point or may_vanish))
-        ready.next = free and ((not issuing) or last)
+        ready.next = (not issuing) or last
 
     @always_comb
     def decide():
@@ -225,10 +223,8 @@ def half_lines(
     def issue():
         if reset:
             issuing.next = False
-            slot.next = False
         elif accept:
             issuing.next = True
-            slot.next = not slot
         elif last:
             issuing.next = False
         if accept:
@@ -243,7 +239,6 @@ def half_lines(
         if accept:
             rect_1.word.next = rects.rect.word
             entry_1.word.next = entry.word
-            slot_1.next = slot
 
     @always_comb
     def see_end():
@@ -360,8 +355,7 @@ def half_lines(
 
     asked = asks.query.joined(
         from_light=lit, left=chain.start, right=right, strict=strict, axis_1=axis_1, back_1=back_1, factor_1=factor_1,
-        axis_2=axis_2, back_2=back_2, factor_2=factor_2, half_line=half_line, last=last, slot=slot_1,
-        number=number_asked,
+        axis_2=axis_2, back_2=back_2, factor_2=factor_2, half_line=half_line, last=last, number=number_asked,
     )  # fmt: skip
 
     @always_comb

@@ -40,7 +40,7 @@ def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configur
     query_1, query_2, query_3 = (Query(config) for _ in range(3))
     opposite_1, opposite_2 = signed(factor_bits + 1), signed(factor_bits + 1)
     factor_1_2, factor_2_2, factor_1_3, factor_2_3 = (signed(factor_bits) for _ in range(4))
-    strict_4, half_line_4, last_4, slot_4 = (bit() for _ in range(4))
+    strict_4, half_line_4, last_4 = (bit() for _ in range(3))
     number_4 = unsigned(NUMBER_BITS)
     x_left, x_right, y_left, y_right = (signed(slope_bits) for _ in range(4))
     x_growth, y_growth = signed(growth_bits), signed(growth_bits)
@@ -129,7 +129,6 @@ def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configur
         strict_4.next = query_3.strict
         half_line_4.next = query_3.half_line
         last_4.next = query_3.last
-        slot_4.next = query_3.slot
         number_4.next = query_3.number
 
     @always_comb
@@ -145,7 +144,6 @@ def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configur
         answer.growth.next = grown[grown_bits:].signed()
         answer.half_line.next = half_line_4
         answer.last.next = last_4
-        answer.slot.next = slot_4
         answer.number.next = number_4
 
     return instances()

@@ -143,9 +143,9 @@ def count_bits(config: Configuration) -> int:
 class Query(Record):
     """A line f(c) = factor_1 X(c) - factor_2 Y(c) - strict for `line_eval`, asked at the columns left and right.
 
-    X and Y are the components of the slope on axis_1 and axis_2, negated if back_1 and back_2. half_line, last, slot,
-    number: returned with the answer. half_line: it belongs to a rectangle's set-up, in that slot; last: the rectangle
-    has no more. With a light, from_light: X and Y are components of the slope from the light, and on axis 3 of e.
+    X and Y are the components of the slope on axis_1 and axis_2, negated if back_1 and back_2. half_line, last,
+    number: returned with the answer. half_line: it belongs to a rectangle's set-up; last: the rectangle has no more.
+    With a light, from_light: X and Y are components of the slope from the light, and on axis 3 of e.
     """
 
     def __init__(self, config: Configuration):
@@ -154,7 +154,7 @@ class Query(Record):
             {"from_light": int(config.light), "left": columns, "right": columns, "strict": 1}
             | {"axis_1": AXIS_BITS, "back_1": 1, "factor_1": factor}
             | {"axis_2": AXIS_BITS, "back_2": 1, "factor_2": factor}
-            | {"half_line": 1, "last": 1, "slot": 1, "number": NUMBER_BITS}
+            | {"half_line": 1, "last": 1, "number": NUMBER_BITS}
         )
 
 
@@ -165,7 +165,6 @@ class Answer(Group):
         valid: a query's answer is here.
         half_line: as in the `Query`.
         last: as in the `Query`.
-        slot: as in the `Query`.
         number: as in the `Query`.
         left: f at the left column.
         right: f at the right column.
@@ -175,7 +174,7 @@ class Answer(Group):
     """
 
     def __init__(self, config: Configuration, **given: Any):
-        self.valid, self.half_line, self.last, self.slot = bit(), bit(), bit(), bit()
+        self.valid, self.half_line, self.last = bit(), bit(), bit()
         self.number = unsigned(NUMBER_BITS)
         self.left, self.right = signed(line_bits(config)), signed(line_bits(config))
         self.growth = signed(divisor_bits(config))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The entries of a chain: the rectangles that its rays meet, each with its columns."""
 
-from myhdl import always, block, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit
@@ -31,16 +31,16 @@ def set_up(
         done: output strobe; all entries have been appended.
         config: the design.
     """
-    slot, free, opened, idle, walked = (bit() for _ in range(5))
+    opened, idle, walked = (bit() for _ in range(3))
     met = Entry(config)
 
     walk = half_lines(
         clk=clk, reset=reset, start=start, chain=chain, from_light=from_light, rects=rects, asks=asks, answer=answer,
-        free=free, done=done, slot=slot, opened=opened, entry=met, walked=walked, config=config,
+        done=done, opened=opened, entry=met, walked=walked, config=config,
     )  # fmt: skip
     clip = clipper(
-        clk=clk, reset=reset, chain=chain, opened=opened, slot=slot, met=met, asks=asks, answer=answer, free=free,
-        append=append, entry=entry, idle=idle, config=config,
+        clk=clk, reset=reset, chain=chain, opened=opened, met=met, asks=asks, answer=answer, append=append, entry=entry,
+        idle=idle, config=config,
     )  # fmt: skip
 
     @always(clk.posedge)
@@ -50,8 +50,8 @@ def set_up(
         elif append:
             count.next = count + 1
 
-    @always(clk.posedge)
+    @always_comb
     def end():
-        done.next = walked and idle and not (done or reset)
+        done.next = walked and idle
 
     return instances()

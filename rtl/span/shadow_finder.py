@@ -99,7 +99,7 @@ def shadow_finder(
 
     asked = asks.query.joined(
         from_light=none, left=column, right=last, strict=none, axis_1=axis_1, back_1=back_1, factor_1=factor_1,
-        axis_2=winner.axis, back_2=winner.back, factor_2=factor_2, half_line=none, last=none, slot=none, number=axis,
+        axis_2=winner.axis, back_2=winner.back, factor_2=factor_2, half_line=none, last=none, number=axis,
     )  # fmt: skip
 
     @always_comb

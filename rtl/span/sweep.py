@@ -233,7 +233,7 @@ def sweep(
     asked = asks.query.joined(
         from_light=none, left=asked_left, right=asked_right, strict=later, axis_1=tested.axis, back_1=tested.back,
         factor_1=to_rival, axis_2=rival.axis, back_2=rival.back, factor_2=to_tested, half_line=none,
-        last=none, slot=none, number=no_number,
+        last=none, number=no_number,
     )  # fmt: skip
     crossed = asks.division.joined(value=answer.left, growth=answer.growth)
 

@@ -405,7 +405,7 @@ def cells_bench(
         stepped: output strobe.
         config: the design.
     """
-    no_tags = {name: unconnected(1) for name in ("half_line", "last", "slot")}
+    no_tags = {name: unconnected(1) for name in ("half_line", "last")}
     answer, asks = Answer(config, **no_tags), Asks(config)
     no_sweep_asks, no_corner_asks, no_surface_asks = (Asks(config, asks=False, divides=False) for _ in range(3))
     cells = surface_cells(

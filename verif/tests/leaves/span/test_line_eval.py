@@ -60,7 +60,6 @@ def test_line_eval(options, leaf_of, random):
             tags = {
                 "half_line": int(random.integers(2)),
                 "last": int(random.integers(2)),
-                "slot": int(random.integers(2)),
             }
             tags["number"] = int(random.integers(8))
             signed = [-factor if back else factor for factor, back in zip(factors, backs, strict=True)]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from fractions import Fraction
 
 import numpy as np
@@ -15,7 +16,7 @@ from raycaster.golden.spans import Chain as Fan
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.hdl.signals import bit
 from raycaster.rtl.span.clipper import clipper
-from raycaster.rtl.span.first_change import quotient_bits
+from raycaster.rtl.span.first_change import division_cycles
 from raycaster.rtl.span.half_lines import half_lines
 from raycaster.rtl.span.records import Answer, Asks, Chain, Entry
 from raycaster.verif.random_world import random_camera, random_rectangles
@@ -108,7 +109,7 @@ def test_half_lines(options, leaf_of, random):
         "entry": lambda: Entry(config),
     }  # fmt: skip
     leaf = leaf_of(half_lines, config, **ports)
-    leaf.case({"reset": 1, "free": 1, "answer_half_line": 0, "done": 0})
+    leaf.case({"reset": 1, "answer_half_line": 0, "done": 0})
     numbers, asked_lines = set(), {}
     for _ in range(leaf.some(300)):
         table = random_rectangles(random, 6, closed=False)
@@ -181,50 +182,46 @@ def test_half_lines(options, leaf_of, random):
 
 
 def test_clipper(leaf_of, random):
-    """Answers of one rectangle after the other, while divisions of the one before are under way."""
+    """Lines of one rectangle after the other, each answered, divided and used while others are asked for."""
     config = span_config(screen="tiny", rectangles=8, reflections=1)
     ports = {
         "chain": lambda: Chain(config), "met": lambda: Entry(config), "asks": lambda: Asks(config),
         "answer": lambda: Answer(config), "entry": lambda: Entry(config),
     }  # fmt: skip
-    leaf, steps = leaf_of(clipper, config, **ports), quotient_bits(config)
-    leaf.case({"reset": 1, "answer_divided": 0, "opened": 0, "answer_valid": 0, "answer_half_line": 1})
-    slot, kinds = 0, set()
-    for _ in range(leaf.some(240)):
+    leaf, cycles, kinds = leaf_of(clipper, config, **ports), division_cycles(config), set()
+    quiet = {"reset": 0, "opened": 0, "answer_valid": 0, "answer_half_line": 1, "answer_last": 0}
+    leaf.case(quiet | {"reset": 1})
+    for _ in range(leaf.some(60)):
         start = int(random.integers(60))
         stop = int(random.integers(start + 1, 65))
-        leaf.case({"reset": 0, "chain_start": start, "chain_stop": stop}, {"idle": 1})
-        distance, low, high = int(random.integers(1, 512)), start, stop
-        leaf.case({"opened": 1, "slot": slot, "met_distance": distance}, {"free": 1})
-        lines = []
-        for _ in range(4):
-            growth, place = int(random.integers(-20, 21)), int(random.integers(-20, 84))
-            lines.append(Line(int(random.integers(20)) - growth * place, growth))
-        for number, line in enumerate(lines, 1):
-            ends = {"left": line.at(start), "right": line.at(stop - 1), "growth": line.growth}
-            tags = {"slot": slot, "number": number, "last": int(number == 4)}
-            leaf.case({"opened": 0, "answer_valid": 1, **named("answer", ends | tags)}, {"free": 0, "idle": 0})
-        inside = [column for column in range(start, stop) if all(line.at(column) >= 0 for line in lines)]
-        rejected = any(line.at(start) < 0 and line.at(stop - 1) < 0 for line in lines)
-        leaf.stimulus.append({"answer_valid": 0})
-        if not rejected:
-            for line in lines:
-                if (line.at(start) < 0) != (line.at(stop - 1) < 0) and low < high:
-                    leaf.expect(
-                        {"asks_divide": 1, "asks_division_value": line.at(start), "asks_division_growth": line.growth}
-                    )
-                    change = next(x for x in range(start, stop) if (line.at(x) < 0) != (line.at(start) < 0))
-                    leaf.stimulus += [{}] * steps
-                    leaf.stimulus += [{"answer_divided": 1, "answer_columns": change - start}, {"answer_divided": 0}]
-                    if line.at(start) < 0:
-                        low = max(low, change)
-                    else:
-                        high = min(high, change)
-        assert inside == ([] if rejected else [*range(low, high)])
-        leaf.expect({"asks_divide": 0})
-        leaf.case({}, {"append": int(bool(inside)), "idle": 1, "free": 1})
-        leaf.expect({"entry_start": low, "entry_stop": high, "entry_distance": distance}, when=inside)
-        kinds.add((rejected, low < high, inside == [*range(start, stop)]))
-        slot = 1 - slot
+        inputs, outputs, opened, ended = defaultdict(dict), defaultdict(dict), 1, 0
+        for _ in range(int(random.integers(1, 9))):
+            distance, low, high, lines = int(random.integers(1, 512)), start, stop, []
+            for _ in range(int(random.integers(4, 7))):
+                growth, place = int(random.integers(-20, 21)), int(random.integers(-40, 104))
+                lines.append(Line(int(random.integers(20)) - growth * place, growth))
+            inputs[opened] |= {"opened": 1, "met_distance": distance}
+            for cycle, line in enumerate(lines, opened + 1 + ANSWER):
+                ends = {"left": line.at(start), "right": line.at(stop - 1), "growth": line.growth}
+                inputs[cycle] |= {"answer_valid": 1, **named("answer", ends | {"last": int(line is lines[-1])})}
+                given = {"value": line.at(start), "growth": line.growth}
+                outputs[cycle] |= {"asks_divide": 1, **named("asks_division", given)}
+                change = [column for column in range(start, stop) if (line.at(column) < 0) != (line.at(start) < 0)]
+                inputs[cycle + cycles]["answer_columns"] = int(random.integers(64))
+                if change:
+                    inputs[cycle + cycles]["answer_columns"] = change[0] - start
+                    low, high = (max(low, change[0]), high) if line.at(start) < 0 else (low, min(high, change[0]))
+            inside = [column for column in range(start, stop) if all(line.at(column) >= 0 for line in lines)]
+            rejected = any(line.at(start) < 0 and line.at(stop - 1) < 0 for line in lines)
+            assert inside == ([] if rejected else [*range(low, high)])
+            ended = opened + ANSWER + len(lines) + cycles + 1
+            outputs[ended] |= {"append": int(bool(inside))}
+            if inside:
+                outputs[ended] |= named("entry", {"start": low, "stop": high, "distance": distance})
+            kinds.add((rejected, low < high, inside == [*range(start, stop)]))
+            opened += len(lines) + int(random.choice([0, 0, 3]))
+        for cycle in range(ended + 2):
+            seen = {"append": 0, "asks_divide": 0, "idle": int(cycle < 2 or cycle > ended)} | outputs[cycle]
+            leaf.case(quiet | {"chain_start": start, "chain_stop": stop} | inputs[cycle], seen)
     leaf.check(spare=True)
-    assert len(kinds) == 4
+    assert len(kinds) == 5

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Leaf test of `span_renderer`: scenes that are drawn in time and late, at a monitor, with the times of the model."""
 
-from collections import Counter
+from collections import Counter, defaultdict
 
 import numpy as np
 from engine_vectors import TINY_SCREEN, check_frames, scene_in_view, scene_inputs, small_config, start_cycle
@@ -14,8 +14,8 @@ from raycaster.screens import Screen, Span
 from raycaster.verif.expected import sorted_rect
 
 FAST_SCREEN = Screen(
-    columns=8, rows=2, horizon_row=1, doubling=1,
-    horizontal=Span(8, 4, 6, 4, active_high=False), vertical=Span(2, 1, 1, 1, active_high=True),
+    columns=8, rows=3, horizon_row=1, doubling=1,
+    horizontal=Span(8, 2, 4, 2, active_high=False), vertical=Span(3, 1, 1, 1, active_high=True),
 )  # fmt: skip
 """A screen that shows a frame in less time than it takes to draw some scenes."""
 
@@ -33,11 +33,11 @@ def test_span_renderer(config, leaf_of, random):
     first = FIRST_START + (config.rectangles if units > 1 else 0)
     black = np.zeros((screen.rows, columns), dtype=int)
     drawn, shown, whole_at, black_now = black, black, -1, True
-    pictures, strobes, held, seen = [], {}, {"reset": 0}, Counter()
+    pictures, strobes, held, seen = [], defaultdict(set), {"reset": 0}, Counter()
     now = start_cycle(screen)
     leaf.stimulus += [held] * (now + 1)
     for number in range(leaf.some(75)):
-        strobes[now] = {"start_screen"}
+        strobes[now] |= {"start_screen"}
         if whole_at < now:
             strobes[now] |= {"take_scene"} | ({"frames_shown"} if not black_now else set())
             shown = drawn
