@@ -15,11 +15,12 @@ import shlex
 import shutil
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from subprocess import CompletedProcess
 from tempfile import TemporaryDirectory
+from typing import Any, TypeVar
 
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
@@ -33,10 +34,12 @@ from raycaster.design.options import CommandParser, add_configuration_options, a
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import OpenBoard, board_names, find_board
-from raycaster.fpga.flows import FLOWS, Clocks, Flow, clocks_for, place_and_route
+from raycaster.fpga.flows import FLOWS, OTHER_MEMORIES, Clocks, Flow, clocks_for, largest_list, place_and_route
 from raycaster.fpga.netlist import write_netlist
-from raycaster.memory_map import PROGRAM_FILE
+from raycaster.golden.frames import check_list, scene_rows
+from raycaster.memory_map import MEMORY_WORDS, PROGRAM_FILE
 from raycaster.output import Console, Table, replaced
+from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.runs.outcomes import add_keep_option, keep
 from raycaster.runs.tools import find_program, prepare_wasm, run_program
@@ -298,12 +301,42 @@ def _design(arguments: argparse.Namespace, board: OpenBoard, console: Console) -
     """
     options = given_options(arguments)
     if not arguments.game:
-        scene = arguments.scene or find_scene("mirror_room")
-        return design_of(scene, options, arguments.fix, console, **board.configuration)
+        path = arguments.scene or find_scene("mirror_room")
+        design = with_list(board, design_of(path, options, arguments.fix, console, **board.configuration), options)
+        config = design.configuration
+        if config.facts.whole_frames:
+            check_list(scene_rows(design.scene, config, design.reflections), config, path)
+        return design
     if arguments.scene or arguments.fix:
         raise UserError(f"game: the game sets up its own scene; leave out the scene and {as_typed('fix')}")
     configuration = configure(**{"engine": GAME_ENGINE} | board.configuration | options)
-    return ProcessorDesign(build_firmware(arguments.output.absolute() / "firmware").words, configuration)
+    program = build_firmware(arguments.output.absolute() / "firmware").words
+    return with_list(board, ProcessorDesign(program, configuration), options)
+
+
+AnyDesign = TypeVar("AnyDesign", Design, ProcessorDesign)
+
+
+def with_list(board: OpenBoard, design: AnyDesign, options: Mapping[str, Any]) -> AnyDesign:
+    """Return a design with the largest lists that fit the board's chip, if they are shorter than the usual ones.
+
+    Raises:
+        UserError: the chip's block RAM holds no lists, or less than those that the options ask for.
+    """
+    config = design.configuration
+    if not config.facts.whole_frames:
+        return design
+    words, (places, width) = MEMORY_WORDS, FLOWS[board.flow].block
+    program = -(-words // places) * -(-WORD_BITS // width) if isinstance(design, ProcessorDesign) else 0
+    most = largest_list(board, config, OTHER_MEMORIES + program)
+    rows = config.screen_geometry.rows
+    if most < rows or ("list" in options and config.list > most):
+        asked = config.list if "list" in options else rows
+        raise UserError(
+            f"list: the block RAM of the {board.title} holds lists of {most:,} runs, and {asked:,} are needed; choose "
+            f"another engine or another board"
+        )
+    return replace(design, configuration=replace(config, list=min(config.list, most)))
 
 
 def verilog(arguments: argparse.Namespace) -> str:

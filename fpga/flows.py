@@ -16,6 +16,8 @@ from raycaster.configuration import Configuration
 from raycaster.errors import UserError
 from raycaster.fpga.board import OpenBoard
 from raycaster.fpga.multipliers import register_products
+from raycaster.rtl.common.widths import pixel_bits
+from raycaster.rtl.span.lists import end_bits
 from raycaster.runs.tools import run_program
 
 SYSTEM_CLOCK, SHIFT_CLOCK = "clk", "shift_clk"
@@ -64,6 +66,7 @@ class Flow:
         cells: nextpnr's names of logic cells, registers, multipliers and memory blocks; the same name twice if a cell
             has both.
         factor_bits: width of a multiplier's factors.
+        block: places of a RAM block and their width, in a shape that Yosys takes for large memories.
         tells_crossings: True if nextpnr reports paths from one clock to another.
         pll: returns the PLL's parameters for an input frequency and an output frequency in MHz, with `per_clk` output
             cycles per cycle of clk, and the resulting output frequency; None if there are none.
@@ -80,6 +83,7 @@ class Flow:
     bitstream: str
     cells: tuple[str, str, str, str]
     factor_bits: int
+    block: tuple[int, int]
     tells_crossings: bool
     pll: Callable[[float, float, float], Pll | None]
 
@@ -98,7 +102,7 @@ def clocks_for(board: OpenBoard, config: Configuration) -> Clocks:
     if board.video == "parallel" and screen.clocks_per_pixel > 1:
         raise UserError(
             f"rows: the {board.title} takes one clock per pixel; choose {as_typed('rows', 120)}, 96 or 60, or "
-            f"{as_typed('engine', 'beam')}"
+            f"{as_typed('engine', 'span')}"
         )
     pixel_mhz = screen.monitor_hz / 1e6
     # Ten bits per pixel, two per cycle.
@@ -109,6 +113,25 @@ def clocks_for(board: OpenBoard, config: Configuration) -> Clocks:
         raise UserError(f"screen: the {board.title} makes no pixel clock near {pixel_mhz:g} MHz; choose other ROWS")
     made = found[1] / shifts * screen.clocks_per_pixel
     return Clocks(found[0], {SYSTEM_CLOCK: made} | ({SHIFT_CLOCK: found[1]} if board.video == "dvi" else {}))
+
+
+OTHER_MEMORIES = 4
+"""RAM blocks of a design besides its lists and queues: the scene's, with all features."""
+
+
+def largest_list(board: OpenBoard, config: Configuration, others: int = OTHER_MEMORIES) -> int:
+    """Return the entries of the largest lists for which a board's chip has RAM blocks; 0 if there are none.
+
+    Args:
+        board: target board.
+        config: the design, which draws whole frames.
+        others: RAM blocks that something else needs.
+    """
+    columns = config.screen_geometry.columns
+    places, width = FLOWS[board.flow].block
+    across = -(-(end_bits(columns) + pixel_bits(config)) // width)
+    queues = config.units * -(-2 * columns // places) * across if config.units > 1 else 0
+    return max(0, (board.memories - others - queues) // across) * places // 2
 
 
 def _lpf(board: OpenBoard) -> str:
@@ -284,6 +307,7 @@ FLOWS: Mapping[str, Flow] = {
         bitstream="bit",
         cells=("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD"),
         factor_bits=18,
+        block=(2048, 9),
         tells_crossings=True,
         pll=_ecp5_pll,
     ),
@@ -299,6 +323,7 @@ FLOWS: Mapping[str, Flow] = {
         bitstream="bin",
         cells=("ICESTORM_LC", "ICESTORM_LC", "ICESTORM_DSP", "ICESTORM_RAM"),
         factor_bits=16,
+        block=(512, 8),
         tells_crossings=False,
         pll=_ice40_pll,
     ),
@@ -315,6 +340,7 @@ FLOWS: Mapping[str, Flow] = {
         bitstream="fs",
         cells=("LUT4", "DFF", "MULT18X18", "BSRAM"),
         factor_bits=18,
+        block=(2048, 9),
         tells_crossings=False,
         pll=_gowin_pll,
     ),

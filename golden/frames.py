@@ -5,8 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from pathlib import Path
 
+from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration
+from raycaster.errors import UserError
 from raycaster.golden.spans import Row, SpanModel
 from raycaster.golden.world import Rectangles
 from raycaster.scene import Scene
@@ -88,3 +91,16 @@ def cycles_of(rows: Iterable[Row], config: Configuration) -> int:
 def runs_of(rows: Iterable[Row]) -> int:
     """Return the entries that a list needs for a frame of these rows."""
     return sum(len(row.runs) for row in rows)
+
+
+def check_list(rows: Iterable[Row], config: Configuration, path: Path) -> None:
+    """Check that a design's lists hold the frame of a scene file; otherwise the scene would never be shown.
+
+    Raises:
+        UserError: they do not.
+    """
+    if (needed := runs_of(rows)) > config.list:
+        raise UserError(
+            f"{path}: a frame has {needed:,} runs of one colour, but a list of the design holds {config.list:,}; take "
+            f"{as_typed('list', needed + needed % 2)} or more"
+        )

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -141,6 +142,6 @@ def add_ray_caster(
     if soc.irq.enabled:
         soc.irq.add(name, use_loc_if_exists=True)
     for path, register in register_map(*config.map).items():
-        constant = path.replace("].", "_").replace("[", "_").upper()
+        constant = re.sub(r"\W+", "_", path).upper()
         soc.add_constant(f"{name}_{constant}_OFFSET", 4 * register.address)
     return module

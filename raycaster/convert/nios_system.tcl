@@ -5,7 +5,7 @@
 # Run it in the directory that `make verilog` wrote, where Platform Designer looks for the component raycaster_hw.tcl:
 #   qsys-script --script=nios_system.tcl --cmd="set family {MAX 10}; set device 10M50DAF484C7G"
 #
-# clock_hz is the frequency of the system's clock; the beam engine needs its pixel clock. Software finds all addresses by
+# clock_hz is the frequency of the system's clock; the span engine needs its pixel clock. Software finds all addresses by
 # the names in the system.h of its board support package; the driver's raycaster_sw.tcl is in sw/.
 
 package require -exact qsys 14.0

@@ -42,7 +42,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
     reflections, background, usable = None, None, None
     if camera_fixed:
         reflections, background = tied(config.reflections, REFLECTION_BITS), tied(fixed.background, RGB_BITS)
-    elif not config.facts.line_buffered and config.reflections == 0:
+    elif not (config.facts.line_buffered or config.facts.whole_frames) and config.reflections == 0:
         reflections = unconnected(REFLECTION_BITS)  # without reflections, it does not read their number
     if fixed:
         usable = tied((1 << config.rectangles) - 1, unsigned(config.rectangles))

@@ -25,6 +25,7 @@ from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.bitstream import write_project
 from raycaster.fpga.board import Board, OpenBoard, QuartusBoard, board_names, find_board
 from raycaster.golden.engines import model_of
+from raycaster.golden.frames import scene_cycles
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
 from raycaster.output import Console, emptied, printable
@@ -120,8 +121,9 @@ def watch(
     late_ns: int = 0,
     again: int = 0,
     placed: bool = False,
+    blank: int = 0,
 ) -> list[np.ndarray]:
-    """Simulate the board and return the first frames that its monitor sees after reset.
+    """Simulate the board and return the first frames with a picture that its monitor sees after reset.
 
     The board's parts are connected to the chip's pins by `wiring.WIRING`.
 
@@ -137,6 +139,7 @@ def watch(
         late_ns: extra duration of reset.
         again: number of frames to record after a second reset, in the middle of a frame; they follow the others.
         placed: True if the Verilog is a netlist; then nothing checks when the symbols of a DVI link are sampled.
+        blank: number of frames after each reset that have no picture yet; these are not among the others.
 
     Returns:
         The frames, each uint8 (visible lines, visible pixels, 3).
@@ -144,7 +147,8 @@ def watch(
     Raises:
         UserError: the simulator, or the board's wiring, is missing.
         SimulationError: the simulation could not be built or run.
-        VideoError: the output departs from the standard, or is sampled while it may change.
+        VideoError: the output departs from the standard, is sampled while it may change, or is not blank where it
+            must be.
     """
     screen, wiring = design.screen_geometry, wiring_of(board.name)
     per_pixel = SYMBOL_BITS if "link" in wiring.outputs else 1
@@ -152,7 +156,7 @@ def watch(
     masks = [*buttons, *[buttons[-1]] * (MASKS - len(buttons))]
     pressed = "".join(f"{mask:0{len(BUTTONS)}b}" for mask in reversed(masks))
     # Reset restarts the video before the first vertical sync, from which frames are counted.
-    values = [count * frame + frame // 8 for count in (frames, again)]
+    values = [(blank + count) * frame + frame // 8 for count in (frames, again)]
     if again:
         values[0] += frame // 2
     arguments = [f"+values={values[0]}", f"+again={values[1] if again else 0}", f"+pressed={pressed}"]
@@ -163,10 +167,23 @@ def watch(
         if abs(rate / per_pixel / screen.monitor_hz * 1e6 - 1) > ALLOWED:
             raise VideoError(f"pixel clock: {rate / per_pixel:.3f} MHz, expected {screen.monitor_hz / 1e6:g} MHz")
         found = pictures(symbols(wires(lines)), screen) if per_pixel > 1 else parallel_pictures(lines, screen)
-        if len(found) < count:
-            raise VideoError(f"{len(found)} frames after reset, expected {count}")
-        seen += found[:count]
+        if len(found) < blank + count:
+            raise VideoError(f"{len(found)} frames after reset, expected {blank + count}")
+        if any(picture.any() for picture in found[:blank]):
+            raise VideoError(f"a picture is shown before {blank} frames have passed")
+        seen += found[blank : blank + count]
     return seen
+
+
+def blank_frames(design: Design) -> int:
+    """Return the number of frames after reset that have no picture yet.
+
+    A design that draws whole frames shows the first one at the first StartScreen at which it is whole.
+    """
+    config = design.configuration
+    if not config.facts.whole_frames:
+        return 0
+    return -(-scene_cycles(design.scene, config, design.reflections) // config.screen_geometry.frame_cycles)
 
 
 def golden(design: Design, position: tuple[int, int, int] | None = None) -> np.ndarray:
@@ -356,8 +373,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         with console.waiting(f"{board.name}, {design.configuration.name}: building and simulating"):
             sources = write_project(board, design, output)
             frames = watch(
-                board, sources, design.configuration, arguments.frames, output, simulator=arguments.simulator
-            )
+                board, sources, design.configuration, arguments.frames, output, simulator=arguments.simulator,
+                blank=blank_frames(design),
+            )  # fmt: skip
     except (SimulationError, VideoError) as error:
         print(printable(error), file=sys.stderr)
         return 1

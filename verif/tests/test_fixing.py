@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 from conftest import ROOT, SMALL_SCENE, Bench
 from rich.console import Console
-from scene_vectors import fixed_config
 
 from raycaster.convert.write import write_verilog
 from raycaster.design.decide import configure
@@ -25,9 +24,8 @@ from raycaster.fixed import FixedRectangle, FixedScene
 from raycaster.fpga import fit as search
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
-from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.golden.world import Rectangles
 from raycaster.registers import address_bits
-from raycaster.rtl.beam.beam_caster import known_facet, known_growth
 from raycaster.rtl.engines import ENGINES, engine_of
 from raycaster.scene import Camera, Rectangle, Scene, dump_scene, load_scene
 from raycaster.sim.simulator import SimulationError
@@ -197,31 +195,6 @@ def test_omissions_say_why():
     assert "tests of the reflection against green slab, side" in omissions("floor", "all")
 
 
-@pytest.mark.parametrize("camera", [False, True])
-def test_known_values_of_fixed_rectangles(camera, random):
-    """Known facets and growths equal the distances and products computed for random cameras or the fixed one."""
-    config = fixed_config(32, "beam", camera)
-    for number, rectangle in enumerate(config.fixed.rectangles):
-        facet, growth = known_facet(number, config), known_growth(number, config)
-        assert set(facet) == {"usable", "axis", "colour"} | ({"distance"} if camera else set())
-        assert camera == (len(growth) == 5)
-        # A column adds 1 to the slope along y.
-        step, (p, q) = int(rectangle.axis == 1), {0: (1, 2), 1: (0, 2), 2: (1, 0)}[rectangle.axis]
-        u, v = OTHER_AXES[rectangle.axis]
-        low, high = {u: rectangle.u_low, v: rectangle.v_low}, {u: rectangle.u_high, v: rectangle.v_high}
-        for _ in range(8):
-            eye = config.fixed.camera or random.integers(512, size=3).tolist()
-            away = rectangle.position - eye[rectangle.axis]
-            seen = {"usable": 1, "axis": rectangle.axis, "colour": rectangle.colour, "distance": away}
-            grown = {
-                "way_p": away * int(p == 1),
-                **{f"low_{name}": (low[axis] - eye[axis]) * step for name, axis in (("p", p), ("q", q))},
-                **{f"high_{name}": (high[axis] - eye[axis]) * step for name, axis in (("p", p), ("q", q))},
-            }
-            assert facet == {name: seen[name] for name in facet}
-            assert growth == {name: grown[name] for name in growth}
-
-
 # Whole designs --------------------------------------------------------------------------------------------------------
 
 
@@ -252,7 +225,7 @@ def test_no_pixel_changes(bench: Bench, tmp_path, engine, name, scope, options):
     assert result["worst_group_cycles"] <= engine_of(design.configuration).group_cycles(design.configuration)
 
 
-@pytest.mark.slow_sets("beam", "exact", "seed")
+@pytest.mark.slow_sets("exact", "seed")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_any_camera_may_look_at_fixed_rectangles(bench: Bench, tmp_path, engine):
     """The scene has coplanar rectangles and some at x = 0 that `rects` leaves out; a camera may be in any corner."""
@@ -287,7 +260,7 @@ def test_a_rectangle_wrongly_left_out_is_caught(bench: Bench, engine):
         bench("sim.frame_bench", broken, "icarus", SMALL_SCENE)
 
 
-@pytest.mark.slow_sets("beam-all", "beam-rects", "exact", "seed")
+@pytest.mark.slow_sets("exact", "seed")
 @pytest.mark.parametrize("scope", SCOPES)
 @pytest.mark.parametrize("engine", ENGINES)
 def test_fixed_rectangles_have_no_memory(engine, scope, tmp_path):
@@ -313,7 +286,7 @@ def test_the_least_fraction_that_meets_an_error():
     assert [one.error for one in found if one.configuration.engine != "seed"] == 2 * (len(ENGINES) - 1) * [0]
     assert [one.scope for one in found] == len(found) // 2 * ["general", "all"]
     # An engine given as an option is the only candidate.
-    assert {one.configuration.engine for one in search.candidates(BOXES, {"engine": "beam"}, (), None)} == {"beam"}
+    assert {one.configuration.engine for one in search.candidates(BOXES, {"engine": "span"}, (), None)} == {"span"}
 
 
 @pytest.mark.slow

@@ -41,8 +41,8 @@ SCENE = load_scene(ROOT / "docs" / "three_rectangles.toml")
 
 VIDEO = ("video", 0, Subsignal("valid", Pins(1)), *(Subsignal(name, Pins(width)) for name, width in video_data_layout))
 
-# The second interrupt begins a frame with the whole scene, which ends at the next vertical sync. A reset in the middle
-# of a frame comes first.
+# The second interrupt begins a frame with the whole scene, which ends at the next vertical sync; if whole frames are
+# drawn before they are shown, the third one. A reset in the middle of a frame comes first.
 BENCH = """
 `timescale 1ns/1ns
 module soc_bench;
@@ -66,7 +66,7 @@ end
 always @(negedge vs) if (!reset) begin
     frames = frames + 1;
     $display("frame %0d, wrong syncs %0d", leds, wrong_syncs);
-    if (leds >= 2 || frames == 10) $finish;
+    if (leds >= SHOWN_AT || frames == 10) $finish;
 end
 always @(posedge vga_clk) if (!reset && blank_n) $display("pins %h", {r, g, b});
 always @(negedge clk) if (!reset && valid) begin
@@ -87,7 +87,7 @@ def pixels(text: str, name: str, shape: tuple[int, int], colour_bits: int) -> np
 @pytest.mark.slow_sets("axi4lite")
 @pytest.mark.parametrize(
     "options",
-    [{"bus": "wishbone", "engine": "exact"}, {"bus": "axi4lite", "engine": "beam", "colour_bits": 5}],
+    [{"bus": "wishbone", "engine": "exact"}, {"bus": "axi4lite", "engine": "span", "colour_bits": 5}],
     ids=["wishbone", "axi4lite"],
 )
 def test_a_frame_is_golden(options, tmp_path, monkeypatch):
@@ -103,14 +103,15 @@ def test_a_frame_is_golden(options, tmp_path, monkeypatch):
     # LiteX's comments contain the time; without them a built model is found again.
     files[-1].write_text(re.sub(r"^//.*\n", "", files[-1].read_text(), flags=re.MULTILINE))
     bench = tmp_path / "soc_bench.v"
-    bench.write_text(BENCH.replace("COLOUR_BITS", str(config.colour_bits)))
+    shown_at = 2 + config.facts.whole_frames
+    bench.write_text(BENCH.replace("COLOUR_BITS", str(config.colour_bits)).replace("SHOWN_AT", str(shown_at)))
     # The processor's registers have no reset; random initial values reveal reads before the first write.
     flags = ("--x-assign", "unique", "--x-initial", "unique", "-Wno-lint", "-Wno-style")
     command = build_program(f"litex-{config.name}", bench.stem, [*files, bench], build=BUILD, flags=flags)
     done = run_tool(tmp_path, *command, "+verilator+rand+reset+2")
     assert "leds are lit" not in done.stdout
     *_, last, end, _ = re.split(r"^frame (.*)\n", done.stdout.partition("reset\n")[2], flags=re.MULTILINE)
-    assert end == "2, wrong syncs 0", done.stdout
+    assert end == f"{shown_at}, wrong syncs 0", done.stdout
     screen = config.screen_geometry
     shape = screen.vertical.visible, screen.horizontal.visible
     expected = shown(ExactModel().render(SCENE, screen), config)
@@ -125,9 +126,9 @@ CONNECTED = {
     | {"wb_adr": "bus_adr[4:0]", "1'b0": "bus_err"},
     "axi4lite": {f"s_axi_{name}{end}": f"{name}_{end}" for name in AXI_FIELDS for end in ("valid", "ready")}
     | {f"s_axi_{name}{field}": f"{name}_payload_{field}" for name, fields in AXI_FIELDS.items() for field in fields}
-    | {f"s_axi_{name}addr": f"{name}_payload_addr[6:0]" for name in ("aw", "ar")},
+    | {f"s_axi_{name}addr": f"{name}_payload_addr[11:0]" for name in ("aw", "ar")},
 }
-"""Names in LiteX by the ports of a design with three rectangles."""
+"""Names in LiteX by the ports of a design with three rectangles, with AXI4-Lite of one with lists of frames."""
 
 UNUSED = {
     "source_first", "source_last", "source_ready", "bus_bte", "bus_cti",
@@ -137,7 +138,7 @@ UNUSED = {
 WRAPPED = {
     "low": ({"bus": "wishbone", "screen": "tiny", "engine": "exact"}, "!", "!", "!vga_clk"),
     "low-and-high": ({"bus": "wishbone", "rows": 200, "engine": "exact"}, "!", "", "!vga_clk"),
-    "high": ({"bus": "axi4lite", "rows": 180, "engine": "beam", "colour_bits": 5}, "", "", "1'b1"),
+    "high": ({"bus": "axi4lite", "rows": 180, "engine": "span", "colour_bits": 5}, "", "", "1'b1"),
 }
 """Options; the polarities of HS and VS, from VESA's and CTA's standards, as operators; when a pixel is valid."""
 
@@ -225,7 +226,7 @@ def test_every_connection(kind, tmp_path):
         ("low", '~vga["clk"]', 'vga["clk"]', "source_valid is"),
         ("low", "adr[:words]", "adr[1 : words + 1]", "bus_adr"),
         ("low", "adr[:words]", "adr", "expects 5 bits, got 30"),
-        ("high", "addr[: words + 2]", "addr[:words]", "expects 7 bits, got 5"),
+        ("high", "addr[: words + 2]", "addr[:words]", "expects 12 bits, got 10"),
         ("high", '"aw": ["addr"], "w": ["data", "strb"]', '"w": ["data"], "aw": ["addr"]', "(s_axi_wstrb) floating"),
         ("high", "CHANNEL_BITS - config.colour_bits", "0", "source_payload_r"),
         ("high", 'for name in "rgb")', 'for name in "rg")', "source_payload_b"),
@@ -248,8 +249,8 @@ def test_the_map_is_that_of_the_registers(bus, standard, tmp_path):
     exported = json.loads(get_csr_json(soc.csr_regions, soc.constants, soc.mem_regions))
     assert exported["memories"]["tracer"] == {"base": 0x8000_0000, "size": 128, "type": "io"}
     expected = {
-        "tracer_" + re.sub(r"\[(\d+)\]\.", r"_\1_", name) + "_offset": 4 * register.address
-        for name, register in register_map(config.rectangles).items()
+        "tracer_" + re.sub(r"\[(\d+)\]\.", r"_\1_", name).replace(".", "_") + "_offset": 4 * register.address
+        for name, register in register_map(*config.map).items()
     }
     assert {name: value for name, value in exported["constants"].items() if name.endswith("_offset")} == expected
 
@@ -259,7 +260,7 @@ def test_the_map_is_that_of_the_registers(bus, standard, tmp_path):
     [
         ({"bus": "apb"}, 50e6, "bus: LiteX takes wishbone or axi4lite, not apb"),
         ({"bus": "wishbone"}, 48e6, r"clock: seed-tiny.* needs 50 MHz, and the SoC has 48"),
-        ({"bus": "wishbone", "engine": "beam", "pixels": 2}, 12.5e6, "pixels: LiteX's video has 1 per clock, not 2"),
+        ({"bus": "wishbone", "engine": "span", "pixels": 2}, 12.5e6, "pixels: LiteX's video has 1 per clock, not 2"),
     ],
 )
 def test_bad_options_get_one_line(options, clock, complaint, tmp_path):

@@ -15,7 +15,7 @@ from conftest import SMALL_SCENE, plant, run_tool
 from tcl import tcl_calls
 
 from raycaster.buses import BRIDGED, BUSES, OWN
-from raycaster.configuration import Configuration
+from raycaster.configuration import FEATURES, Configuration
 from raycaster.convert import verilog
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM
 from raycaster.convert.register_views import HEADER
@@ -25,7 +25,7 @@ from raycaster.design.decide import configure
 from raycaster.fit.fixing import fix
 from raycaster.hdl.hierarchy import prefixed
 from raycaster.registers import address_bits
-from raycaster.rtl.engines import ENGINES, EXACT
+from raycaster.rtl.engines import EXACT
 from raycaster.runs.tools import run_yosys
 
 CONFIGURATIONS = [
@@ -42,16 +42,16 @@ CONFIGURATIONS = [
     configure(engine="exact", screen="tiny", reflections=2, turn=True, materials=True, patterns=True),
     configure(engine="exact", screen="tiny", rectangles=2, light=True),
     configure(engine="exact", screen="tiny", reflections=2, rectangles=2, **dict.fromkeys(EXACT.facts.features, True)),
-    configure(engine="beam", rows=180),
-    configure(engine="beam", screen="tiny", reflections=2, rectangles=3, scale=1),
-    configure(engine="beam", reflections=0, rectangles=1, colour_bits=4),
-    configure(engine="beam", screen="tiny", reflections=4, rectangles=2),
-    configure(engine="beam", rows=180, scale=6, pixels=2),
-    configure(engine="beam", screen="tiny", rectangles=2, turn=True, materials=True, patterns=True, pixels=2),
-    configure(engine="beam", screen="tiny", reflections=2, rectangles=2, turn=True, materials=True, patterns=True),
+    configure(engine="span", rows=180),
+    configure(engine="span", screen="tiny", reflections=2, rectangles=3, scale=1),
+    configure(engine="span", reflections=0, rectangles=1, colour_bits=4),
+    configure(engine="span", screen="tiny", reflections=4, rectangles=2, units=2),
+    configure(engine="span", rows=180, scale=6, pixels=2, units=3),
+    configure(engine="span", screen="tiny", rectangles=2, turn=True, materials=True, patterns=True, pixels=2),
+    configure(engine="span", screen="tiny", reflections=2, rectangles=2, **dict.fromkeys(FEATURES, True)),
     *(configure(engine="exact", screen="tiny", rectangles=2, bus=bus) for bus in BRIDGED),
     fix(SMALL_SCENE, {"screen": "tiny"}, "rects").design.configuration,
-    *(fix(SMALL_SCENE, {"engine": engine}, "all").design.configuration for engine in ENGINES),
+    *(fix(SMALL_SCENE, {"engine": engine}, "all").design.configuration for engine in ("seed", "exact", "span")),
 ]
 SMALL = configure(screen="tiny", units=2, rectangles=2, allow_underrun=True)
 
@@ -68,7 +68,7 @@ PYTHON = re.compile(r"`|\b(?:None|True|False|config|self)\b|\b[a-z_]\w*\.[a-z_]"
 
 
 @pytest.mark.slow_sets(
-    "beam-vga180", "exact-tiny48-u2-r1", "exact-tiny48-u2-r2-m1-c8-wishbone", "exact-tiny48-u8", "exact-vga", "seed-vga"
+    "span-vga", "exact-tiny48-u2-r1", "exact-tiny48-u2-r2-m1-c8-wishbone", "exact-tiny48-u8", "exact-vga", "seed-vga"
 )
 @configurations
 def test_tools_have_nothing_to_say(config: Configuration, tmp_path):
@@ -164,10 +164,10 @@ def test_every_waiver_is_needed(tmp_path):
 BENCHED = {
     "seed": SMALL,
     **{bus: configure(engine="exact", screen="tiny", rectangles=2, bus=bus) for bus in BUSES},
-    "beam": configure(engine="beam", screen="tiny", rectangles=2),
-    "pairs": configure(engine="beam", screen="tiny", rectangles=2, pixels=2, colour_bits=4),
-    "play": configure(engine="beam", screen="play", rectangles=2),
-    "720p": configure(engine="beam", rows=180, rectangles=1, reflections=0),
+    "span": configure(engine="span", screen="tiny", rectangles=2),
+    "pairs": configure(engine="span", screen="tiny", rectangles=2, pixels=2, colour_bits=4),
+    "play": configure(engine="span", screen="play", rectangles=2),
+    "720p": configure(engine="span", rows=180, rectangles=1, reflections=0),
     "60 rows": configure(engine="exact", rows=60),
     "200 rows": configure(rows=200),
     "fixed": fix(SMALL_SCENE, {"engine": "exact"}, "all").design.configuration,
@@ -211,7 +211,7 @@ def test_the_bench_as_it_is_has_one_verdict(name, module, right, wrong, complain
 def test_waivers_are_for_own_files_alone(prefix):
     """A user's files with longer names have no waivers; with the file's name in any folder, Verilator needs them."""
     names = [
-        f"{prefixed(name, prefix)}.v" for name in ("divider", "colour_mean_2", "ray_unit", "apb_bridge", "by_axis")
+        f"{prefixed(name, prefix)}.v" for name in ("divider", "operand_ends_9", "ray_unit", "apb_bridge", "by_axis")
     ]
     patterns = re.findall('-file "(.*?)"', waivers(names, prefix))
     for name in names:

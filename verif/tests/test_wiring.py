@@ -127,10 +127,10 @@ class Case(NamedTuple):
 
 CASES = [
     *(Case(name) for name in board_names(QuartusBoard)),
-    *(Case(name, engine) for name in board_names(OpenBoard) for engine in ("exact", "beam") if name != "icebreaker"),
-    Case("icebreaker", "beam"),
+    *(Case(name, engine) for name in board_names(OpenBoard) for engine in ("exact", "span") if name != "icebreaker"),
+    Case("icebreaker", "span"),
     Case("ulx3s", game=True),
-    Case("icebreaker", "beam", game=True),
+    Case("icebreaker", "span", game=True),
     # Two PLLs.
     Case("ulx3s", rows=240),
     *(Case(name, bits=bits) for name, bits in (("de2", 3), ("de1_soc", 1), ("de10_lite", 8))),
@@ -288,7 +288,7 @@ def test_each_pin_has_its_role(case, project):
 
 
 ICE, GAME, ULX3S, TANG, DE2, LITE = (
-    Case("icebreaker", "beam"), Case("ulx3s", game=True), Case("ulx3s"), Case("tang_nano_20k"), Case("de2"),
+    Case("icebreaker", "span"), Case("ulx3s", game=True), Case("ulx3s"), Case("tang_nano_20k"), Case("de2"),
     Case("de10_lite"),
 )  # fmt: skip
 
@@ -333,7 +333,7 @@ FAULTS = [
 """Faults that the checks must notice: a design with the fault, the file below `fpga/`, the right and the wrong text."""
 
 
-@pytest.mark.slow_sets(quick=["ulx3s-exact-dvi_board", "icebreaker-beam-parallel", "de2-exact-de2"])
+@pytest.mark.slow_sets(quick=["ulx3s-exact-dvi_board", "icebreaker-span-parallel", "de2-exact-de2"])
 @pytest.mark.parametrize(
     ("case", "file", "right", "wrong"),
     [pytest.param(*fault, id=f"{fault[0].board}-{fault[0].engine}-{fault[1]}-{at}") for at, fault in enumerate(FAULTS)],
@@ -380,8 +380,8 @@ ALLOWED = 0.005
 
 PLLS = [
     *(Case(name, *more) for name in ("ulx3s", "colorlight_i9", "icepi_zero", "tang_nano_20k")
-      for more in (("exact", False, 240), ("beam", False, 240), ("beam", False, 180))),
-    Case("ulx3s", "beam", rows=200),
+      for more in (("exact", False, 240), ("span", False, 240), ("span", False, 180))),
+    Case("ulx3s", "span", rows=200),
     Case("icebreaker", "exact", rows=60),
 ]  # fmt: skip
 
