@@ -27,7 +27,7 @@ from raycaster.runs.outcomes import RESULTS, add_keep_option, keep
 from raycaster.scene import packaged_scenes
 from raycaster.sim.scenes import RESULT, output_directory
 
-DESIGNS: tuple[Mapping[str, Any], ...] = (*({"engine": name} for name in ENGINES), {"engine": "beam", "rows": 180})
+DESIGNS: tuple[Mapping[str, Any], ...] = (*({"engine": name} for name in ENGINES), {"engine": "span", "rows": 180})
 """Options of the compared designs; all other options have their defaults."""
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,7 @@ from raycaster.fit.fixing import SCOPES, Fixing, fix, general_design, show
 from raycaster.fpga.cells import FAMILIES, Area, measure
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
+from raycaster.golden.frames import check_list, cycles_of, runs_of, scene_cycles, scene_rows
 from raycaster.golden.picture import count_wrong
 from raycaster.output import Console, Table
 from raycaster.rtl.engines import ENGINES, engine_of
@@ -32,7 +33,7 @@ from raycaster.runs.jobs import processes, run_jobs
 from raycaster.runs.outcomes import add_keep_option, keep
 from raycaster.runs.tools import find_program
 from raycaster.runs.waits import announce
-from raycaster.scene import load_scene
+from raycaster.scene import Scene, load_scene
 
 FRACTIONS, ROUNDINGS = range(9), ("truncate", "nearest")
 GENERAL = "general"
@@ -76,17 +77,58 @@ def error_of(design: Design) -> float:
     return count_wrong(seen, perfect) / seen[..., 0].size
 
 
-def cycles_a_frame(config: Configuration) -> int:
-    """Return the most system clocks per frame, with all rectangles; without a line buffer, each shown pixel counts."""
-    screen = config.screen_geometry
-    times = 1 if config.facts.line_buffered else screen.doubling**2
-    return times * screen.rows * config.groups * engine_of(config).group_cycles(config)
+MOST_UNITS = 8
+"""Largest number of units that is chosen for a scene; more only draw the few rows that take longest."""
+
+
+def cycles_a_frame(config: Configuration, scene: Scene, reflections: int | None = None) -> int:
+    """Return the system clocks per frame of a scene if whole frames are drawn, otherwise the most for any scene.
+
+    Args:
+        config: the design.
+        scene: the scene.
+        reflections: number of reflections that are shown; None for the scene's own.
+    """
+    if config.facts.whole_frames:
+        return scene_cycles(scene, config, reflections)
+    return config.screen_geometry.rows * config.groups * engine_of(config).group_cycles(config)
+
+
+def in_time(design: Design, options: Mapping[str, Any]) -> dict[str, int]:
+    """Choose the fewest units that draw each frame in time, and lists that hold it, unless the options give them.
+
+    Args:
+        design: design for the scene.
+        options: configuration options, as given.
+
+    Returns:
+        The chosen options; none for a design that does not draw whole frames.
+
+    Raises:
+        UserError: the given lists do not hold the scene.
+    """
+    config = design.configuration
+    if not config.facts.whole_frames:
+        return {}
+    rows = scene_rows(design.scene, config, design.reflections)
+    if "list" in options:
+        check_list(rows, config, str(design.path))
+    found = {}
+    if "units" not in options:
+        times = ((units, cycles_of(rows, replace(config, units=units))) for units in range(1, MOST_UNITS + 1))
+        enough = (units for units, cycles in times if cycles <= config.screen_geometry.frame_cycles)
+        found["units"] = next(enough, MOST_UNITS)
+    if "list" not in options and runs_of(rows) > config.list:
+        found["list"] = runs_of(rows) + runs_of(rows) % 2
+    return found
 
 
 def candidates(
     path: Path, options: Mapping[str, Any], scopes: Sequence[str], error: float | None
 ) -> Iterator[Candidate]:
     """Yield the designs of every engine that the options allow, general and with the scene built in.
+
+    An engine that draws whole frames gets the units and lists that the scene takes.
 
     The seed engine gets the fewest fraction bits that meet the error, for each rounding; it is left out if none do.
 
@@ -115,7 +157,11 @@ def _arithmetic(
     """Yield the options of each arithmetic that meets the error, its general design, and its error."""
     chosen = {**options, "engine": engine}
     if not ENGINES[engine].facts.divides:
-        yield chosen, general_design(path, chosen), 0.0
+        general = general_design(path, chosen)
+        if more := in_time(general, options):
+            chosen |= more
+            general = general_design(path, chosen)
+        yield chosen, general, 0.0
         return
     roundings = (options["rounding"],) if "rounding" in options else ROUNDINGS
     fractions = (options["fraction_bits"],) if "fraction_bits" in options else FRACTIONS
@@ -146,7 +192,8 @@ def show_all(found: Sequence[Candidate], areas: Sequence[Area], best: int, conso
         table.add_row(
             config.engine + arithmetic, candidate.scope, config.units, config.rectangles, area.tables,
             f"{area.tables / general.tables:.0%}", area.registers, area.multipliers, area.memories,
-            cycles_a_frame(config), f"{candidate.error:.2%}" if candidate.error else "0",
+            cycles_a_frame(config, candidate.design.scene, candidate.design.reflections),
+            f"{candidate.error:.2%}" if candidate.error else "0",
             "fit" if place == best else "",
         )  # fmt: skip
     console.print(table)

@@ -17,11 +17,13 @@ from matplotlib.figure import Figure
 from raycaster.configuration import Configuration, ConfigurationError, Rounding
 from raycaster.convert.take_home import TOP
 from raycaster.design.decide import OPTIONS, configure
+from raycaster.fpga.fit import cycles_a_frame
 from raycaster.report import plots
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
-from raycaster.report.points import Point, Sweep, predicted_cycles, required_mhz
+from raycaster.report.points import Point, Sweep, required_mhz
 from raycaster.rtl.engines import engine_of
 from raycaster.runs.outcomes import RESULTS, kept_outcome
+from raycaster.scene import load_scene
 
 WORST_SCENE = "raycaster/scenes/mirror_room.toml"
 """Scene for the simulations: it fills the designs' rectangle tables, so no row of another scene takes longer."""
@@ -42,11 +44,11 @@ WORDS = {
 CLOCKED = "frame_ms", "work"
 """Costs that depend on the clock."""
 
-BEAMS: Sequence[Mapping[str, Any]] = (
-    {"scale": 1}, {}, {"pixels": 2}, {"rows": 180}, {"rows": 180, "pixels": 2}, {"rows": 180, "scale": 6},
-    {"rows": 180, "scale": 6, "pixels": 2},
+SPANS: Sequence[Mapping[str, Any]] = (
+    {"scale": 1}, {"scale": 1, "units": 2}, {}, {"units": 2}, {"units": 3}, {"rows": 180, "units": 3},
+    {"rows": 180, "scale": 6, "pixels": 2, "units": 3},
 )  # fmt: skip
-"""Options for the beam engine at scales 1, 2, 4 and 6, with one or two pixels per clock."""
+"""Options for the span engine at scales 1, 2, 4 and 6, with one to three units, at 1080 rows in pairs of pixels."""
 
 Shares = Mapping[Rounding, Mapping[int, Sequence[float]]]
 """Shares of wrong pixels of all pictures, by rounding and fraction bits."""
@@ -136,13 +138,13 @@ def seed_designs(fractions: Iterable[int], units: Iterable[int], screen: str = "
 
 
 def exact_designs(units: Iterable[int], screen: str = "vga") -> list[Configuration]:
-    """List designs without error: exact-engine designs that meet the row budget, and beam-engine designs.
+    """List designs without error: exact-engine designs that meet the row budget, and span-engine designs.
 
-    The beam engine has just one for screens other than VGA.
+    The span engine has just one for screens other than VGA.
     """
-    beams = BEAMS if screen == "vga" else [{}]
+    spans = SPANS if screen == "vga" else [{}]
     exacts = ({"engine": "exact", "units": count} for count in units)
-    return _possible(screen, [*exacts, *({"engine": "beam", **one} for one in beams)])
+    return _possible(screen, [*exacts, *({"engine": "span", **one} for one in spans)])
 
 
 def _possible(screen: str, choices: Iterable[Mapping[str, Any]]) -> list[Configuration]:
@@ -296,7 +298,8 @@ def design_chapter(designs: Sequence[Design], shares: Shares) -> Chapter:
     }
     drawn = [Plot(f"work_{cost}", caption, work_precision(designs, cost), data) for cost, caption in captions.items()]
     wrong = sum(one.timing["wrong"] for one in designs)
-    off = sum(one.frame_cycles != predicted_cycles(one.config) for one in designs)
+    scene = load_scene(WORST_SCENE)
+    off = sum(one.frame_cycles != cycles_a_frame(one.config, scene, one.config.reflections) for one in designs)
     beaten = [
         any(other.cells <= one.cells and other.required_ms <= one.required_ms for other in exact) for one in rounded
     ]
@@ -317,16 +320,16 @@ def design_chapter(designs: Sequence[Design], shares: Shares) -> Chapter:
         "wrong pixels against the cost. On the line, the frontier, no other design that rounds is better in one "
         "respect without being worse in the other. The lower panel shows the designs without error, on the same axis. "
         "Labels: fraction bits F and rounding (n nearest, t truncate) for the seed engine, units for the exact engine, "
-        "rows of the picture for the beam engine, x2 with two pixels per clock. The seed and exact engines draw "
-        "320x240 pixels; the beam engine computes every pixel that the monitor shows."
+        "rows of the picture and units for the span engine. The seed and exact engines draw 320x240 pixels; the span "
+        "engine draws as many as its label says, and its time is that of the scene."
     )
     routed = ", ".join(one.title for one in designs if one.is_routed) or "no designs"
     tuned = [
         f"Placed and routed, at the slowest clock of all boards measured: {routed}. All "
         "other times are for the clock that the monitor requires, which the designs may miss or exceed.",
         "Tuned, within the row budget: the seed engine has 20 or 32 units and up to 3 quotient bits per cycle, the "
-        "exact engine 4 to 16 units. Nothing was chosen for a scene, and all have the same options of Yosys and "
-        "Verilator.",
+        "exact engine 4 to 16 units; the span engine has 1 to 3. Nothing was chosen for a scene, and all have the same "
+        "options of Yosys and Verilator.",
         "Left out: other numbers of units and fraction bits; truncation with F > 0; culling, whose time depends on the "
         "scene; turned cameras, patterns, mirror strengths and lights, which cost cells in every engine; and energy, "
         f"as the tools have no power model of the chip. Each simulation draws one frame of {WORST_SCENE}.",

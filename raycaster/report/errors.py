@@ -116,7 +116,7 @@ def _distribution(pictures: Pictures, every: Data) -> tuple[Section, str]:
         f"The seed engine's pictures are compared with exact arithmetic, with {REFLECTIONS} reflection, for "
         f"{len(worlds)} random worlds (seeds 0 to {len(worlds) - 1}, {scene_of(worlds[0]).rows} "
         f"rows; six styles, in which ties, edges and slits are common) and the {len(pictures.scenes)} packaged scenes "
-        "whose camera is not turned. The exact and beam engines have no wrong pixels."
+        "whose camera is not turned. The exact and span engines have no wrong pixels."
     )
     shown = [picture(source, 0, "truncate", scene_of(source).reflections) for source in pictures.scenes]
     drawn = [

@@ -28,6 +28,7 @@ from raycaster.errors import UserError
 from raycaster.fit.fixing import fix, fixed_rectangle, with_camera
 from raycaster.fixed import FixedScene
 from raycaster.fpga.cells import FAMILIES, measure
+from raycaster.fpga.fit import cycles_a_frame
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.model import Model, Trace
 from raycaster.golden.picture import wrong_pixels
@@ -36,7 +37,6 @@ from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import Rectangles
 from raycaster.output import Console
 from raycaster.report.depth_errors import condition, depth_errors
-from raycaster.rtl.engines import engine_of
 from raycaster.runs.digests import digest, sources_digest, tools_digest
 from raycaster.runs.jobs import Kept, positive, run_jobs
 from raycaster.scene import Scene, dump_scene, load_scene
@@ -105,7 +105,7 @@ def _world(seed: int) -> Scene:
 def exact_trace(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
     """Return the slopes of a picture, int64 (rows, columns, 3), and its exact trace; cached for successive points.
 
-    The screen is tiny or VGA; scenes of 180 rows, made for the beam engine, are drawn with 240.
+    The screen is tiny or VGA; scenes of 180 rows are drawn with 240.
     """
     rows = 48 if screen == "tiny" else scene.rows if (screen, scene.rows) in SCREENS else 240
     slopes = primary_slopes(SCREENS[screen, rows], scene.camera.basis)
@@ -254,19 +254,9 @@ def _left(point: Point) -> dict[str, Any]:
     steps = []
     for part, config in leaving_out(point.what, point.config.engine):
         counted = replace(config, units=LEFT_UNITS, allow_underrun=True)
-        figures = {"units": config.units, "cycles": predicted_cycles(counted)}
+        figures = {"units": config.units, "cycles": cycles_a_frame(counted, point.scene)}
         steps.append({"left_out": part, **_counted(counted), **figures, "clock_mhz": required_mhz(counted)})
     return {"steps": steps}
-
-
-def predicted_cycles(config: Configuration) -> int:
-    """Predict the cycles per frame in the worst case, in which every group tests all rectangles.
-
-    An engine without a line buffer computes a pixel as often as the monitor shows it.
-    """
-    screen = config.screen_geometry
-    times = 1 if config.facts.line_buffered else screen.doubling**2
-    return engine_of(config).group_cycles(config) * config.groups * screen.rows * times
 
 
 def required_mhz(config: Configuration) -> float:

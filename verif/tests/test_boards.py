@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from subprocess import CompletedProcess
@@ -96,6 +97,37 @@ def test_unsupported_clocks(mhz, options, complaint):
     board = find_board("icebreaker", OpenBoard).model_copy(update={"clock_mhz": mhz})
     with pytest.raises(UserError, match=complaint):
         clocks_for(board, configure(**options))
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "most"),
+    [
+        # 18,432 bits of a block are 2,048 places of 9 bits, four of which have a column of 640 and 24 bits of colour.
+        ("ulx3s", {}, 51 * 2048 // 2),
+        ("icepi_zero", {"scale": 1}, 13 * 2048 // 2),
+        # Two queues take two rows of 640 columns each.
+        ("ulx3s", {"units": 2}, 49 * 2048 // 2),
+        # 4,096 bits are 512 places of 8 bits, three of which have a column of 320 and 12 bits of colour.
+        ("icebreaker", {"scale": 1, "colour_bits": 4}, 8 * 512 // 2),
+    ],
+)
+def test_lists_fit_the_chip(name, options, most):
+    """The usual list is shortened to the RAM blocks that the chip has; a longer one that is asked for is refused."""
+    board, config = find_board(name, OpenBoard), configure(engine="span", **options)
+    whole = Design(SMALL_SCENE, load_scene(SMALL_SCENE), config, 1)
+    assert bitstream.with_list(board, whole, {}).configuration.list == most < config.list
+    short = replace(whole, configuration=replace(config, list=most - 2))
+    for given in ({}, {"list": most - 2}):
+        assert bitstream.with_list(board, short, given) == short
+    with pytest.raises(UserError, match=f"^list: the block RAM of the .* holds lists of {most:,} runs, and"):
+        bitstream.with_list(board, whole, {"list": config.list})
+
+
+def test_a_scene_with_too_many_runs_is_refused():
+    """Its frame would never be whole; nothing is converted."""
+    words = ["mirror_room", "--board", "icebreaker", "--engine", "span", "--rows", "240"]
+    with pytest.raises(UserError, match=r"mirror_room\.toml takes \d,\d+ runs per frame, and the lists have 2,048 "):
+        bitstream.main(words)
 
 
 def test_the_smallest_products_are_left_to_logic():

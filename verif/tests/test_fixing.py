@@ -8,6 +8,7 @@ import itertools
 import json
 import os
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -24,6 +25,7 @@ from raycaster.fixed import FixedRectangle, FixedScene
 from raycaster.fpga import fit as search
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
+from raycaster.golden.frames import runs_of, scene_rows
 from raycaster.golden.world import Rectangles
 from raycaster.registers import address_bits
 from raycaster.rtl.engines import ENGINES, engine_of
@@ -287,6 +289,25 @@ def test_the_least_fraction_that_meets_an_error():
     assert [one.scope for one in found] == len(found) // 2 * ["general", "all"]
     # An engine given as an option is the only candidate.
     assert {one.configuration.engine for one in search.candidates(BOXES, {"engine": "span"}, (), None)} == {"span"}
+
+
+def test_units_and_lists_that_a_scene_takes():
+    """The fewest units that draw a frame in time, by the model; more runs than a list holds are known beforehand."""
+    options = {"engine": "span", "rows": 240, "scale": 1, "reflections": 2}
+    mirrors = SCENES / f"{MIRRORS}.toml"
+    [found] = search.candidates(mirrors, options, (), None)
+    config, scene = found.configuration, found.design.scene
+    cycles = [search.cycles_a_frame(replace(config, units=units), scene) for units in range(1, config.units + 1)]
+    assert [count <= config.screen_geometry.frame_cycles for count in cycles] == [False] * (config.units - 1) + [True]
+    assert found.options["units"] == config.units > 1
+    runs = runs_of(scene_rows(scene, config))
+    assert found.options.keys() == {*options, "units"}
+    [found] = search.candidates(mirrors, {**options, "list": str(runs + runs % 2)}, (), None)
+    assert found.configuration.list == runs + runs % 2
+    with pytest.raises(
+        UserError, match=f"^list: .*{MIRRORS}.toml takes {runs:,} runs per frame, and .* entries; choose"
+    ):
+        list(search.candidates(mirrors, {**options, "list": str(runs - 2)}, (), None))
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from conftest import BUILD, ROOT, SMALL_SCENE, TINY, called, plant, random_values, refusal
+from conftest import BUILD, ROOT, SMALL_SCENE, called, plant, random_values, refusal
 from engine_vectors import check_ray_unit
 
 from raycaster.design.decide import configure
@@ -48,16 +48,29 @@ LIGHT = "[light]\nposition = [60, 100, 300]\n"
     ("cells", "options", "light", "some"),
     [
         ("ecp5", "--units 4 --rectangles 3 --reflections 1", "", ("LUT4", "CCU2C", "MULT18X18D")),
-        ("ice40", "--engine exact --rectangles 3 --units 8 --light 1", LIGHT, ("SB_LUT4", "SB_MAC16", "SB_RAM40_4K")),
-        ("gowin", "--engine exact --rectangles 3 --units 8", "", ("LUT4", "ALU", "DFFRE", "MULT18X18")),
-        ("ecp5", "--engine beam --rectangles 3", "", ("LUT4", "CCU2C", "MULT18X18D", "TRELLIS_DPR16X4")),
+        (
+            "ice40", "--engine exact --rectangles 2 --units 4 --reflections 1 --light 1", LIGHT,
+            ("SB_LUT4", "SB_MAC16", "SB_RAM40_4K"),
+        ),
+        (
+            "gowin", "--engine span --rectangles 3 --reflections 1", "",
+            ("LUT4", "ALU", "DFFRE", "MULT18X18", "SDPX9B"),
+        ),
+        (
+            "ecp5", "--engine span --rectangles 3 --reflections 1 --units 2", "",
+            ("LUT4", "CCU2C", "MULT18X18D", "TRELLIS_DPR16X4", "DP16KD"),
+        ),
     ],
-    ids=["ecp5", "ice40", "gowin", "beam"],
-)
+    ids=["ecp5", "ice40", "gowin", "units"],
+)  # fmt: skip
 def test_frame(tmp_path, cells, options, light, some):
-    """The netlist that is placed draws every pixel: each engine, the exact one also with a light."""
-    scene, build = tmp_path / "small.toml", BUILD / "test" / f"netlist-{cells}-{'beam' in options}"
-    scene.write_text(SMALL_SCENE.read_text() + light)
+    """The netlist that is placed draws every pixel: each engine, the exact one with a light, spans with two units.
+
+    Nothing shades the floor but the post, so the wall is left out with a light, which needs most units.
+    """
+    scene, build = tmp_path / "small.toml", BUILD / "test" / f"netlist-{cells}-{'span' in options}"
+    first, floor, wall, post = SMALL_SCENE.read_text().split("[[rect]]")
+    scene.write_text("[[rect]]".join([first, floor, *([] if light else [wall]), post]) + light)
     ran = called("sim", "--gates", "--build", str(build), str(scene), "--cells", cells, *options.split(), cwd=ROOT)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     # Results and netlists of an earlier version may be there, too.
@@ -76,10 +89,10 @@ def test_frame(tmp_path, cells, options, light, some):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("start", [1, 2])
-@pytest.mark.parametrize("cells", LIBRARIES)
-def test_random_start(bench, tmp_path, cells, start):
+@pytest.mark.parametrize(("cells", "engine"), [*((cells, "exact") for cells in LIBRARIES), ("ecp5", "span")])
+def test_random_start(bench, tmp_path, cells, engine, start):
     """The flip-flops of a netlist start with random values, which have no effect after reset."""
-    design = TINY["exact"]
+    design = configure(engine=engine, screen="tiny", rectangles=3)
     models, placed = synthesise(convert(design, BUILD), BUILD / "test" / "netlists", family=cells).files
     text, found = re.subn(r"initial Q = \w+;", "", models.read_text())
     assert found

@@ -79,7 +79,7 @@ def test_a_small_report(tmp_path, monkeypatch):
     assert corners.command in {row["command"] for row in rows("pictures")}
     assert [row["left out"] for row in rows("left")][::9] == ["", "hidden rectangles"]
     best = rows("designs")
-    assert {one["design"].split()[0] for one in best} == {"seed", "exact,", "beam"}
+    assert {one["design"].split()[0] for one in best} == {"seed", "exact,", "span"}
     assert all(one["pixels unlike the model"] == "0" and "--runs 5" in one["command"] for one in best)
     assert "0 designs took more or fewer cycles than predicted, and 0 pixels differ from the golden model" in html
     # Nothing is computed twice: the pages are rebuilt from kept results.
