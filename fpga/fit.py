@@ -112,7 +112,7 @@ def in_time(design: Design, options: Mapping[str, Any]) -> dict[str, int]:
         return {}
     rows = scene_rows(design.scene, config, design.reflections)
     if "list" in options:
-        check_list(rows, config, str(design.path))
+        check_list(rows, config, design.path)
     found = {}
     if "units" not in options:
         times = ((units, cycles_of(rows, replace(config, units=units))) for units in range(1, MOST_UNITS + 1))

@@ -19,7 +19,6 @@ from typing import Any
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
-from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration
 from raycaster.convert.digest import verilog_digest
 from raycaster.design.for_scene import Design, left_out, packaged_for
@@ -33,7 +32,7 @@ from raycaster.design.options import (
 )
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
-from raycaster.golden.frames import runs_of, scene_rows
+from raycaster.golden import frames
 from raycaster.output import MARK, Console, Table, check_replaceable, printable, put, remove, replaced
 from raycaster.rtl.engines import ENGINES, SEED
 from raycaster.runs.jobs import processes
@@ -409,12 +408,8 @@ def check_list(run: Design) -> None:
     configuration = run.configuration
     if not configuration.facts.whole_frames:
         return
-    needed = runs_of(scene_rows(run.scene, configuration, run.reflections))
-    if needed > configuration.list:
-        raise UserError(
-            f"{run.path}: a frame has {needed:,} runs of one colour, but a list of the design holds "
-            f"{configuration.list:,}; take {as_typed('list', needed + needed % 2)} or more"
-        )
+    rows = frames.scene_rows(run.scene, configuration, run.reflections)
+    frames.check_list(rows, configuration, run.path)
 
 
 def _cells(outcome: Outcome) -> list[str | Text]:

@@ -25,7 +25,7 @@ from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.bitstream import write_project
 from raycaster.fpga.board import Board, OpenBoard, QuartusBoard, board_names, find_board
 from raycaster.golden.engines import model_of
-from raycaster.golden.frames import scene_cycles
+from raycaster.golden.frames import screens_before
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
 from raycaster.output import Console, emptied, printable
@@ -173,17 +173,6 @@ def watch(
             raise VideoError(f"a picture is shown before {blank} frames have passed")
         seen += found[blank : blank + count]
     return seen
-
-
-def blank_frames(design: Design) -> int:
-    """Return the number of frames after reset that have no picture yet.
-
-    A design that draws whole frames shows the first one at the first StartScreen at which it is whole.
-    """
-    config = design.configuration
-    if not config.facts.whole_frames:
-        return 0
-    return -(-scene_cycles(design.scene, config, design.reflections) // config.screen_geometry.frame_cycles)
 
 
 def golden(design: Design, position: tuple[int, int, int] | None = None) -> np.ndarray:
@@ -374,7 +363,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             sources = write_project(board, design, output)
             frames = watch(
                 board, sources, design.configuration, arguments.frames, output, simulator=arguments.simulator,
-                blank=blank_frames(design),
+                blank=screens_before(design.scene, design.configuration, design.reflections),
             )  # fmt: skip
     except (SimulationError, VideoError) as error:
         print(printable(error), file=sys.stderr)

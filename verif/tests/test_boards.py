@@ -28,6 +28,7 @@ from raycaster.fpga.board import Board, BoardError, OpenBoard, board_names, find
 from raycaster.fpga.flows import FLOWS, clocks_for
 from raycaster.fpga.netlist import left_to_logic
 from raycaster.golden.engines import model_of
+from raycaster.golden.frames import screens_before
 from raycaster.golden.picture import shown
 from raycaster.rtl.system.camera_axis import STEP
 from raycaster.rtl.system.scene_player import BUTTONS
@@ -35,7 +36,7 @@ from raycaster.scene import load_scene
 from raycaster.screens import Screen, Span
 from raycaster.sim.monitor import VideoError
 from raycaster.sim.netlist import as_verilog
-from raycaster.verif.dvi.watch import blank_frames, golden, watch
+from raycaster.verif.dvi.watch import golden, watch
 
 BOARDS = [find_board(name, OpenBoard) for name in board_names(OpenBoard)]
 ULX3S = find_board("ulx3s", OpenBoard)
@@ -126,7 +127,7 @@ def test_lists_fit_the_chip(name, options, most):
 def test_a_scene_with_too_many_runs_is_refused():
     """Its frame would never be whole; nothing is converted."""
     words = ["mirror_room", "--board", "icebreaker", "--engine", "span", "--rows", "240"]
-    with pytest.raises(UserError, match=r"mirror_room\.toml takes \d,\d+ runs per frame, and the lists have 2,048 "):
+    with pytest.raises(UserError, match=r"mirror_room\.toml: a frame has 2,495 runs of .* holds 2,048;"):
         bitstream.main(words)
 
 
@@ -232,7 +233,8 @@ def test_a_board_is_played_and_reset(tmp_path, name, engine):
     order = [button for button in ("up", "right", "left", "forward", "back", "down") if button in board.inputs]
     frames = watch(
         board, files, config, 1 + len(order), tmp_path / "run", simulator="icarus",
-        buttons=[*(1 << BUTTONS.index(button) for button in order), 0], again=1, blank=blank_frames(small),
+        buttons=[*(1 << BUTTONS.index(button) for button in order), 0], again=1,
+        blank=screens_before(small.scene, config),
     )  # fmt: skip
     places = [small.scene.camera.position]
     for button in order:

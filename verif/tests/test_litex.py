@@ -31,6 +31,7 @@ from raycaster.design.decide import configure
 from raycaster.errors import UserError
 from raycaster.fpga.board import Board, OpenBoard, find_board
 from raycaster.golden.exact import ExactModel
+from raycaster.golden.frames import screens_before
 from raycaster.golden.picture import shown
 from raycaster.registers import register_map
 from raycaster.scene import load_scene
@@ -41,8 +42,8 @@ SCENE = load_scene(ROOT / "docs" / "three_rectangles.toml")
 
 VIDEO = ("video", 0, Subsignal("valid", Pins(1)), *(Subsignal(name, Pins(width)) for name, width in video_data_layout))
 
-# The second interrupt begins a frame with the whole scene, which ends at the next vertical sync; if whole frames are
-# drawn before they are shown, the third one. A reset in the middle of a frame comes first.
+# The scene goes live at the second interrupt. A frame that shows it ends at a vertical sync. A reset in the middle of a
+# frame comes first.
 BENCH = """
 `timescale 1ns/1ns
 module soc_bench;
@@ -103,7 +104,7 @@ def test_a_frame_is_golden(options, tmp_path, monkeypatch):
     # LiteX's comments contain the time; without them a built model is found again.
     files[-1].write_text(re.sub(r"^//.*\n", "", files[-1].read_text(), flags=re.MULTILINE))
     bench = tmp_path / "soc_bench.v"
-    shown_at = 2 + config.facts.whole_frames
+    shown_at = 2 + screens_before(SCENE, config)
     bench.write_text(BENCH.replace("COLOUR_BITS", str(config.colour_bits)).replace("SHOWN_AT", str(shown_at)))
     # The processor's registers have no reset; random initial values reveal reads before the first write.
     flags = ("--x-assign", "unique", "--x-initial", "unique", "-Wno-lint", "-Wno-style")
