@@ -126,7 +126,7 @@ def test_lists_fit_the_chip(name, options, most):
 
 def test_a_scene_with_too_many_runs_is_refused():
     """Its frame would never be whole; nothing is converted."""
-    words = ["mirror_room", "--board", "icebreaker", "--engine", "span", "--rows", "240"]
+    words = ["mirror_room", "--board", "icebreaker", "--engine", "span", "--rows", "240", "--scale", "1"]
     with pytest.raises(UserError, match=r"mirror_room\.toml: a frame has 2,495 runs of .* holds 2,048;"):
         bitstream.main(words)
 
