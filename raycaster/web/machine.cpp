@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
 // A design in a page: driver functions and frames, called from JavaScript.
 //
-// Colours are 0xRRGGBB. Functions that return int return an enum raycaster_error from the driver, 0 for success.
+// WHOLE_FRAMES: 1 if the monitor shows the last whole frame, which is older than the live scene. Colours are 0xRRGGBB.
+// Functions that return int return an enum raycaster_error from the driver, 0 for success.
 
 #include <cstdlib>
 #include <cstring>
 #include <type_traits>
 
 #include "bus.h"
+#ifdef DRAWING
+#include "drawing.h"
+#else
 #include "machine.h"
+#endif
 #include "raycaster.h"
 #include "raycaster_regs.h"
 
@@ -24,13 +29,16 @@ constexpr int MOST_WORDS = 1024;
 // Derives the renderer's register words only from the writes that the ray tracer accepted.
 class Follower {
 public:
-    uint32_t live[MOST_WORDS] = {};
+    uint32_t shown[MOST_WORDS] = {};
 
     void see(const Event &event) {
-        if (event.start_screen && waiting && commit_clock + COMMIT_CLOCKS <= event.clock) {
+        // A whole frame is handed over at the StartScreen at which the next scene is taken.
+        if (WHOLE_FRAMES && event.start_screen && !event.again) std::memcpy(shown, live, sizeof shown);
+        if (event.takes_scene && waiting && commit_clock + COMMIT_CLOCKS <= event.clock) {
             std::memcpy(live, committed, sizeof live);
             waiting = false;
         }
+        if (!WHOLE_FRAMES && event.start_screen) std::memcpy(shown, live, sizeof shown);
         // A write in the clock of StartScreen is too late for it.
         if (!event.written) return;
         uint32_t mask = 0;
@@ -47,6 +55,7 @@ public:
 
 private:
     uint32_t shadow[MOST_WORDS] = {};
+    uint32_t live[MOST_WORDS] = {};
     uint32_t committed[MOST_WORDS] = {};
     uint32_t commit_clock = 0;
     bool waiting = false;
@@ -93,6 +102,11 @@ Machine *machine;
 #endif
 Follower follower;
 struct raycaster device;
+
+void follow() {
+    for (const Event &event : machine->events) follower.see(event);
+    machine->events.clear();
+}
 
 raycaster_colour colour(uint32_t rgb) {
     return {static_cast<uint8_t>(rgb >> 16), static_cast<uint8_t>(rgb >> 8), static_cast<uint8_t>(rgb)};
@@ -158,14 +172,28 @@ EXPORT(set_run) void set_run(int run) { raycaster_set_run(&device, run); }
 
 EXPORT(commit) int commit() { return raycaster_commit(&device); }
 
+#ifdef DRAWING
+// Draw the machine's rows of the committed scene: each stride-th row, below the skipped ones. Return the number of
+// clocks in which its unit drew them.
+EXPORT(draw) uint32_t draw(uint32_t skipped, uint32_t stride) {
+    machine->share(skipped, stride);
+    machine->run_frame();
+    follow();
+    return machine->working;
+}
+
+// Runs of these rows: for each its row in the upper half of a number and its end in the lower one, and then its colour,
+// as red, green, blue and 255.
+EXPORT(runs) const uint32_t *runs() { return machine->runs.data(); }
+EXPORT(run_count) uint32_t run_count() { return machine->runs.size() / 2; }
+#else
 // Run to the next vertical sync with these buttons held; return the number of clocks.
 EXPORT(frame) uint32_t frame(uint32_t buttons) {
     static uint64_t before;
     machine->busy = 0;
     machine->hold(buttons);
     machine->run_frame();
-    for (const Event &event : machine->events) follower.see(event);
-    machine->events.clear();
+    follow();
     const uint32_t taken = machine->clocks - before;
     before = machine->clocks;
     return taken;
@@ -178,12 +206,13 @@ EXPORT(busy) uint32_t busy() { return machine->busy; }
 EXPORT(pixels) const uint32_t *pixels() { return machine->pixels.data(); }
 EXPORT(pixel_count) uint32_t pixel_count() { return machine->pixels.size(); }
 
-// Register words that this picture shows.
-EXPORT(live_words) const uint32_t *live_words() { return follower.live; }
-
 // Output of the serial port during the last frame.
 EXPORT(text) const char *text() { return machine->text.data(); }
 EXPORT(text_size) uint32_t text_size() { return machine->text.size(); }
+#endif
+
+// Register words that the last picture shows.
+EXPORT(live_words) const uint32_t *live_words() { return follower.shown; }
 
 #ifdef TAPS
 // Record a ray unit's next computation of its pixel in a row and group.

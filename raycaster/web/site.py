@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import base64
 import gzip
+import io
 import json
 import shutil
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,30 +14,42 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from PIL import Image
+
 from raycaster.complaints import LONGEST_SHOWN
 from raycaster.configuration import FEATURES, MOST_RECTANGLES, WORLD_SIZE, Configuration
 from raycaster.design.decide import configure
 from raycaster.design.options import CommandParser, add_build_option
 from raycaster.errors import UserError
+from raycaster.golden.exact import ExactModel
+from raycaster.golden.frames import FIRST_START
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.output import Console, replaced
-from raycaster.play.walk import DRAG, STEEPEST, STEP, TURN, TURNS, WALKS
+from raycaster.play.system import FASTEST
+from raycaster.play.walk import DRAG, STEEPEST, TURNS, WALKS
 from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
 from raycaster.rtl.engines import SEED
 from raycaster.runs.jobs import processes, run_jobs
-from raycaster.scene import COMPLAINTS, PATTERN_KEYS, PATTERNS, Scene, packaged_scenes
+from raycaster.scene import COMPLAINTS, PATTERN_KEYS, PATTERNS, Scene, load_scene, packaged_scenes
+from raycaster.screens import SCREENS
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
 from raycaster.web.taps import tap_facts
 from raycaster.web.wasm import golden_wasm, machine_wasm
 
 PAGE = Path(__file__).with_name("page")
-SCRIPTS = ("vendor/smol-toml", "scene", "hardware", "settings", "page", "engines", "life", "pixel")
+SCRIPTS = (
+    "vendor/smol-toml", "scene", "hardware", "settings", "text", "room", "page", "engines", "life", "pixel", "plan",
+    "properties", "live",
+)  # fmt: skip
 """Scripts in loading order; `settings.js` is generated."""
 
 FIRST_SCENE = "mirror_room"
-FRACTIONS = (0, 1, 2, 4, 8)
+FRACTIONS = (0, 2, 4, 8)
 """Fraction bits of the seed engines on the page."""
+
+WALK_SPEED, TURN_SPEED = 120, 90
+"""World units and degrees per second, at any frame rate."""
 
 BROWSER_KEYS = {name: f"arrow{name}" for name in ("left", "right", "up", "down")} | {"space": " ", "return": "enter"}
 """Browser's names of keys, by the window's name where the two differ."""
@@ -52,24 +65,31 @@ class Model:
     taps: bool = False
     """True if the page can watch a ray unit of the design."""
 
+    draws: bool = False
+    """True if the page takes runs from the design, without a monitor."""
+
     @property
     def configuration(self) -> Configuration:
         """Configuration of the design."""
         return configure(**self.options)
 
 
-_BEAM = {"engine": "beam", "screen": "play"}
+_SPAN = {"engine": "span", "screen": "play"}
 _LOOKS = {"materials": True, "patterns": True, "reflections": 2}
-WALKS_MODELS = (
-    Model("walk", {**_BEAM, "turn": True}),
-    Model("walk-looks", {**_BEAM, "turn": True, **_LOOKS}),
-    Model("exact", {"engine": "exact", "turn": True, **_LOOKS, "light": True}, taps=True),
-)
-"""Models for the walk, fastest first."""
+ROOM_MODELS = (
+    Model("plain", {**_SPAN, "turn": True}, draws=True),
+    Model("looks", {**_SPAN, "turn": True, **_LOOKS}, draws=True),
+    Model(
+        "full", {**_SPAN, "turn": True, **_LOOKS, "light": True, "reflections": 4, "rectangles": MOST_RECTANGLES},
+        draws=True,
+    ),
+)  # fmt: skip
+"""Models for rooms, fastest first."""
 
 MODELS = (
-    *WALKS_MODELS,
-    Model("game", _BEAM, processor=True),
+    *ROOM_MODELS,
+    Model("exact", {"engine": "exact", "turn": True, **_LOOKS, "light": True}, taps=True),
+    Model("game", FASTEST, processor=True),
     *(Model(f"seed-{bits}", {"engine": "seed", "fraction_bits": bits, **_LOOKS}, taps=bits == 0) for bits in FRACTIONS),
 )
 
@@ -82,12 +102,15 @@ def packed(contents: bytes) -> str:
 def _build(model: Model, build: Path) -> tuple[bytes, dict[str, Any]]:
     """Build a model: return its WebAssembly, and the facts that the page needs about it."""
     config, screen = model.configuration, model.configuration.screen_geometry
-    wasm = machine_wasm(config, processor=model.processor, taps=model.taps, build=build).read_bytes()
+    of = {"processor": model.processor, "taps": model.taps, "draws": model.draws}
+    wasm = machine_wasm(config, **of, build=build).read_bytes()
     return wasm, {
         "engine": config.facts.code,
         **{name: int(getattr(config, name)) for name in FEATURES},
         **{name: getattr(config, name) for name in ("rectangles", "reflections", "fraction_bits")},
         **{name: getattr(screen, name) for name in ("columns", "rows", "horizon_row", "scale", "doubling")},
+        "draws": model.draws,
+        "first_start": FIRST_START,
         **({"taps": tap_facts(config)} if model.taps else {}),
     }
 
@@ -110,7 +133,15 @@ def scene_schema() -> dict[str, object]:
     }
 
 
-def _settings(*, test: bool) -> dict[str, Any]:
+def _thumbnail(path: Path) -> str:
+    """Draw a scene as a small picture, and return its address."""
+    picture = ExactModel().render(load_scene(path), SCREENS["tiny", 48])
+    png = io.BytesIO()
+    Image.fromarray(picture).save(png, "png", optimize=True)
+    return f"data:image/png;base64,{base64.b64encode(png.getvalue()).decode()}"
+
+
+def _settings(models: Sequence[Model], *, test: bool) -> dict[str, Any]:
     """Return the parts of the project that the page uses, such as scenes, keys and step sizes."""
 
     def keys(of: Mapping[str, Iterable[str]]) -> dict[str, list[str]]:
@@ -121,16 +152,17 @@ def _settings(*, test: bool) -> dict[str, Any]:
         "worker": (PAGE / "machine.js").read_text(),
         "schema": scene_schema(),
         "scenes": {name: path.read_text() for name, path in packaged_scenes().items()},
+        "thumbnails": {name: _thumbnail(path) for name, path in packaged_scenes().items()},
         "walk": {
-            "step": STEP, "turn": TURN, "drag": DRAG, "steepest": STEEPEST, "world_size": WORLD_SIZE,
+            "speed": WALK_SPEED, "turn": TURN_SPEED, "drag": DRAG, "steepest": STEEPEST, "world_size": WORLD_SIZE,
             "buttons": [*WALKS, *TURNS], "keys": keys(WALK_KEYS | TURN_KEYS), "first": FIRST_SCENE,
-            "rectangles": WALKS_MODELS[0].configuration.rectangles,
             "models": [
                 {
                     "name": model.name, "features": list(model.configuration.features),
                     "reflections": model.configuration.reflections,
+                    "rectangles": model.configuration.rectangles,
                 }
-                for model in WALKS_MODELS
+                for model in models if model.draws
             ],
         },
         "game": {"buttons": list(BUTTON_NAMES), "keys": keys(GAME_KEYS)},
@@ -172,7 +204,7 @@ def write_site(
         for path in PAGE.iterdir():
             copy = shutil.copytree if path.is_dir() else shutil.copyfile
             copy(path, site / path.name)
-        settings = json.dumps(_settings(test=test), separators=(",", ":"))
+        settings = json.dumps(_settings(models, test=test), separators=(",", ":"))
         (site / "settings.js").write_text(f"Object.assign(RayCaster, {settings});\n")
         page = site / "index.html"
         tags = "\n".join(f'<script src="{name}.js"></script>' for name in SCRIPTS)

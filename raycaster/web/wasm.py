@@ -13,7 +13,9 @@ from raycaster.configuration import Configuration
 from raycaster.design.options import BUILD
 from raycaster.errors import UserError, not_installed
 from raycaster.play.machine import MACHINE as MACHINE_HEADER
-from raycaster.play.machine import SIGNS, TOP, machine_sources
+from raycaster.play.machine import SIGNS, TOP, MachineSources, machine_sources
+from raycaster.registers import address_bits
+from raycaster.rtl.common.widths import column_bits
 from raycaster.runs.tools import TIMEOUT, ToolError, run_program
 from raycaster.sim.simulator import VERILATED_DEFINITIONS, find_tool, library_sources, made, models, verilate
 from raycaster.web.taps import tapped_signals, taps_verilog
@@ -22,6 +24,12 @@ HERE = Path(__file__).parent
 GOLDEN = HERE / "golden.cpp"
 MACHINE = tuple(HERE / name for name in ("machine.cpp", "runtime.cpp", "shim.h", "bus.h"))
 """Files that a machine is compiled from, besides its design; the first two are sources."""
+
+DRAWING = tuple(HERE / name for name in ("drawing.v", "drawing.h"))
+"""Bench and loop of a design without a monitor."""
+
+REPLACED = ("frame_list", "video_generator")
+"""Modules of the design that the bench of a drawing replaces."""
 
 SOFTWARE = Path(raycaster.sw.__path__[0])
 DRIVER = SOFTWARE / "raycaster.c"
@@ -59,21 +67,27 @@ def _link(directory: Path, name: str, target: str, *arguments: str | Path) -> No
         raise ToolError(f"the compiler failed on {name}; its log is {log}")
 
 
-def machine_wasm(config: Configuration, *, processor: bool = False, taps: bool = False, build: Path = BUILD) -> Path:
+def machine_wasm(
+    config: Configuration, *, processor: bool = False, taps: bool = False, draws: bool = False, build: Path = BUILD
+) -> Path:
     """Compile a design, with `machine.cpp`, that a page runs clock by clock; see `build_machine`.
 
-    With taps, the page can watch a ray unit, see `taps.py`; this does not support a processor.
+    With taps, the page can watch a ray unit, see `taps.py`; this does not support a processor. A design that draws has
+    neither, and no monitor; see `drawing_sources`.
 
     Raises:
         UserError: Verilator, the compiler or one of their dependencies is missing, or the compiler failed.
         SimulationError: Verilator failed.
     """
-    tool, design = find_tool("verilator"), machine_sources(config, build, processor=processor)
+    tool = find_tool("verilator")
+    design = drawing_sources(config, build) if draws else machine_sources(config, build, processor=processor)
     text = taps_verilog(config) if taps else ""
-    defines = (f"-DTAPS={len(tapped_signals(config, 0))}",) if taps else ()
-    flags = (*design.flags, *defines)
-    made_with = (tool, _compiler(), flags, design.defines, text)
-    sources = [*design.files, *MACHINE, MACHINE_HEADER, SIGNS, DRIVER, *DRIVER_HEADERS]
+    tapped = (f"-DTAPS={len(tapped_signals(config, 0))}",) if taps else ()
+    flags = (*design.flags, *tapped)
+    defines = (*tapped, *design.defines, f"-DWHOLE_FRAMES={int(config.facts.whole_frames and not draws)}")
+    made_with = (tool, _compiler(), flags, defines, text)
+    header = DRAWING[1] if draws else MACHINE_HEADER
+    sources = [*design.files, *MACHINE, header, SIGNS, DRIVER, *DRIVER_HEADERS]
     name = f"{design.name}-tapped" if taps else design.name
     with made(models(build), f"{name}-{WASI}", sources, made_with) as (place, fresh):
         directory = place.resolve()
@@ -84,15 +98,29 @@ def machine_wasm(config: Configuration, *, processor: bool = False, taps: bool =
                 files[-1].write_text(text)
             verilate(tool, directory, TOP, files, flags, MACHINE[:2])
             library = library_sources(tool)
-            includes = (directory, HERE, MACHINE_HEADER.parent, SOFTWARE, library, library / "vltstd")
+            includes = (directory, HERE, header.parent, SOFTWARE, library, library / "vltstd")
             _link(
                 directory, TOP, WASI, "-mexec-model=reactor",
                 # The driver is C, which allows narrowing conversions.
-                "-std=gnu++20", "-Wno-c++11-narrowing", "-fno-exceptions", *VERILATED_DEFINITIONS, *design.defines,
-                *defines, *(f"-I{path}" for path in includes), "-include", HERE / "bus.h", "-include", HERE / "shim.h",
+                "-std=gnu++20", "-Wno-c++11-narrowing", "-fno-exceptions", *VERILATED_DEFINITIONS, *defines,
+                *(f"-I{path}" for path in includes), "-include", HERE / "bus.h", "-include", HERE / "shim.h",
                 "-include", SIGNS, "-x", "c++", "all.cc", DRIVER,
             )  # fmt: skip
     return directory / f"{TOP}.wasm"
+
+
+def drawing_sources(config: Configuration, build: Path = BUILD) -> MachineSources:
+    """Convert a design of whole frames, to be run without a monitor; see `drawing.v`."""
+    driven = machine_sources(config, build, processor=False)
+    files = [path for path in driven.files[:-1] if path.stem not in REPLACED]
+    flags = [flag for flag in driven.flags if not flag.startswith("-G")]
+    entry_bits = column_bits(config) + 3 * config.colour_bits
+    sizes = (
+        f"-DADDRESS_BITS={address_bits(*config.map)}", f"-DENTRY_BITS={entry_bits}",
+        f"-DROWS={config.screen_geometry.rows}", f"-DCOLOUR_BITS={config.colour_bits}",
+    )  # fmt: skip
+    defines = ("-DDRAWING", f"-DCOLOUR_BITS={config.colour_bits}")
+    return MachineSources(f"{config.name}-drawing", (*files, DRAWING[0]), (*flags, *sizes), defines)
 
 
 def golden_wasm(build: Path = BUILD) -> Path:

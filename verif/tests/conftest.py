@@ -63,11 +63,12 @@ TINY = {
 
 _LOOKS = {"screen": "tiny", "materials": True, "patterns": True, "reflections": 2}
 PAGE_MODELS = {
-    "walk": {"engine": "beam", "screen": "tiny", "turn": True},
+    "plain": {"engine": "span", "screen": "tiny", "turn": True},
+    "full": {"engine": "span", "turn": True, "light": True, **_LOOKS, "reflections": 4, "rectangles": 32},
     "exact": {"engine": "exact", "turn": True, "light": True, **_LOOKS},
     "seed-0": {"engine": "seed", **_LOOKS},
 }
-"""Options of small models for the web page, by the names of the page's own; all but the walk have taps."""
+"""Options of small models for the web page, by the names of the page's own."""
 
 Bench = Callable[..., Path]
 
@@ -307,7 +308,10 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     from raycaster.web.site import Model, write_site  # noqa: PLC0415 - only tests of the page need it
 
     output = tmp_path_factory.mktemp("site") / "web"
-    models = [Model(name, options, taps=name != "walk") for name, options in PAGE_MODELS.items()]
+    models = [
+        Model(name, options, draws=options["engine"] == "span", taps=options["engine"] != "span")
+        for name, options in PAGE_MODELS.items()
+    ]
     write_site(output, BUILD, Console(quiet=True), models=models, test=True)
     return output
 

@@ -17,25 +17,25 @@ from rich.console import Console
 from raycaster.design.decide import configure
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.seed_engine import SeedModel
-from raycaster.golden.world import Rectangles
 from raycaster.play.machine import Machine, build_machine
 from raycaster.rtl.engines import SEED
 from raycaster.scene import Camera, Scene, SceneError, load_scene, packaged_scenes
-from raycaster.screens import SCREENS, Screen
+from raycaster.screens import BEAM_SCREENS, SCREENS, Screen
 from raycaster.sw.firmware import build_firmware
 from raycaster.sw.play_script import DEMO, load
 from raycaster.web.site import MODELS, write_site
 
-WALK, TINY = (configure(**PAGE_MODELS[name]).screen_geometry for name in ("walk", "exact"))
+ROOM, TINY = (configure(**PAGE_MODELS[name]).screen_geometry for name in ("plain", "exact"))
 VGA = SCREENS["vga", 240]
-PIXELS = f"{WALK.columns * WALK.rows:,}"
-MOST_BYTES = 2_000_000
+PLAY = BEAM_SCREENS["play", 240]
+MOST_BYTES = 1_200_000
 """Largest size of the whole page, compressed."""
 
 TOUR = """async ([model, source, cameras]) => {
-    const machine = await Machine.start(model);
-    await machine.call("load", readScene(source, "scene", machine.design.rectangles));
-    const frames = [await machine.frame()];
+    const design = (await RayCaster.model(model)).design, scene = readScene(source, "scene", design.rectangles);
+    const machine = await (design.draws ? Drawing : Machine).start(model);
+    if (!design.draws) await machine.call("load", scene);
+    const frames = [await machine.frame({ scene })];
     for (const camera of cameras) frames.push(await machine.frame({ camera }));
     machine.end();
     return frames.map((frame) => pictureHash(frame.pixels));
@@ -56,7 +56,7 @@ def picture_hash(picture: np.ndarray) -> str:
     return f"{value:08x}"
 
 
-def golden_hash(scene: Scene, camera: Camera | None = None, screen: Screen = WALK) -> str:
+def golden_hash(scene: Scene, camera: Camera | None = None, screen: Screen = ROOM) -> str:
     """Return the hash of the exact picture, optionally from another camera."""
     return picture_hash(ExactModel().render(scene.model_copy(update={"camera": camera or scene.camera}), screen))
 
@@ -74,17 +74,10 @@ def whole_site(tmp_path_factory) -> Path:
 
 
 def opened(page, address: str) -> dict:
-    """Open the page and return the walk's state once it shows checked frames."""
+    """Open the page and return the room's state once it shows a checked frame."""
     page.goto(address)
-    page.wait_for_function("RayCaster.state.walk?.frames > 2 && RayCaster.state.walk.wrong !== null")
-    return page.evaluate("RayCaster.state.walk")
-
-
-@pytest.fixture
-def walk(page, site):
-    """Return the page, which shows the walk."""
-    opened(page, (site / "index.html").as_uri())
-    return page
+    page.wait_for_function("RayCaster.state.room && Number.isInteger(RayCaster.state.room.wrong)")
+    return page.evaluate("RayCaster.state.room")
 
 
 def test_draws_from_a_disk_and_from_a_server(page, site):
@@ -93,54 +86,34 @@ def test_draws_from_a_disk_and_from_a_server(page, site):
         for place in (site.as_uri(), f"http://127.0.0.1:{server.server_port}"):
             state = opened(page, f"{place}/index.html")
             assert (state["hash"], state["wrong"]) == (golden_hash(packaged("mirror_room")), 0)
-            assert f"0 wrong pixels of {PIXELS}" in page.text_content("#walk-status")
+            assert f"{state['compared']:,}, different: 0." in page.text_content("#room-compared")
         server.shutdown()
     assert page.evaluate("Object.keys(RayCaster.scenes)") == list(packaged_scenes())
 
 
-def test_keys_move_the_camera(walk):
-    start = walk.evaluate("RayCaster.state.walk.camera")
-    for key in ("w", "ArrowRight"):
-        walk.keyboard.down(key)
-    moved = "RayCaster.state.walk.camera.position[0] > start.position[0] + 20"
-    walk.wait_for_function(f"(start) => {moved}", arg=start)
-    for key in ("w", "ArrowRight"):
-        walk.keyboard.up(key)
-    walk.wait_for_function("RayCaster.state.walk.wrong === 0")
-    state = walk.evaluate("RayCaster.state.walk")
-    assert state["camera"]["basis"] != start["basis"]
-    scene, basis = packaged("mirror_room"), tuple(map(tuple, state["camera"]["basis"]))
-    place = state["camera"]["position"], scene.background, scene.reflections
-    golden = ExactModel().picture(WALK, Rectangles.of_scene(scene), *place, basis=basis)
-    assert state["hash"] == picture_hash(golden)
-
-
-def test_a_bad_scene_shows_its_line(walk, tmp_path):
-    walk.click("summary")
-    good = walk.input_value("#walk-text")
-    path = tmp_path / "scene"
+def test_a_bad_scene_has_the_complaint_of_the_command_line(page, site, tmp_path):
+    opened(page, (site / "index.html").as_uri())
+    good = page.input_value("#room-text")
+    path = tmp_path / "mirror_room.toml"
     path.write_text(good.replace("colour = ", "color = ", 1))
     with pytest.raises(SceneError) as error:
         load_scene(path)
-    for text, complaint in ((path.read_text(), str(error.value).replace(str(path), "scene")), (good, "")):
-        walk.fill("#walk-text", text)
-        walk.click("#walk-use")
-        assert walk.text_content("#walk-error") == complaint
+    for text, complaint in ((path.read_text(), str(error.value).replace(str(path), path.name)), (good, "")):
+        page.fill("#room-text", text)
+        assert page.text_content("#room-error") == complaint
 
 
-def test_a_planted_pixel_is_counted_and_marked(page, site):
-    assert opened(page, f"{(site / 'index.html').as_uri()}?plant=40,30")["wrong"] == 1
-    assert f"1 wrong pixel of {PIXELS}" in page.text_content("#walk-status .wrong")
-    pixel = "find('walk-picture').getContext('2d').getImageData(40, 30, 1, 1).data"
-    page.wait_for_function(f"[...{pixel}].join() === '255,0,255,255'")
+def test_an_address_plants_a_pixel(page, site):
+    state = opened(page, f"{(site / 'index.html').as_uri()}?plant=40,30")
+    assert (state["wrong"], state["different"]) == (1, 1)
 
 
-TOURS = [("walk", "boxes", 5, WALK), ("exact", "shadow_hall", 5, TINY)]
-TOURS += [("walk-looks", name, 20, VGA) for name in ("checkered_hall", "kaleidoscope", "periscope", "pool", "rooftops")]
+TOURS = [("plain", "boxes", 5, ROOM), ("exact", "shadow_hall", 5, TINY), ("full", "lamplight", 5, ROOM)]
+TOURS += [("looks", name, 20, PLAY) for name in ("checkered_hall", "kaleidoscope", "periscope", "pool", "rooftops")]
 """Models with their scenes, frames and screens; the last five scenes together need every look of a design."""
 
 
-@pytest.mark.slow_sets("walk-looks")
+@pytest.mark.slow_sets("looks")
 @pytest.mark.parametrize(("model", "name", "count", "screen"), TOURS)
 def test_a_tour(page, request, model, name, count, screen):
     """A model draws golden frames, from a scene's camera and on a walk from there with a full turn."""
@@ -176,7 +149,7 @@ def test_the_game_is_the_native_one(page, whole_site):
         expected = [picture_hash(machine.frame(buttons).picture) for buttons in held]
     page.goto((whole_site / "index.html").as_uri() + "#game")
     page.wait_for_function("RayCaster.state.game?.frames > 2 && RayCaster.state.game.wrong === 0")
-    assert "engine beam" in page.text_content("#game-text")
+    assert "engine span" in page.text_content("#game-text")
     assert page.evaluate(GAME, held) == expected
     assert len(set(expected)) > 10
 
@@ -209,11 +182,3 @@ def test_the_engines_side_by_side(page, request, which, screen, fraction_bits):
     assert state["seed"] == {"hash": picture_hash(rounded), "wrong": 0}
     assert state["differs"] == np.any(perfect != rounded, axis=2).sum() > 0
     assert not page.locator("#engines-seed").is_hidden()
-
-
-def test_a_walk_with_a_light(walk):
-    """The walk takes the exact engine for a scene with a light, and the beam engine again for the next scene."""
-    for name, screen in (("evening", TINY), ("boxes", WALK)):
-        walk.select_option("#walk-scene", name)
-        expected = golden_hash(packaged(name), screen=screen)
-        walk.wait_for_function(f"RayCaster.state.walk.hash === '{expected}' && RayCaster.state.walk.wrong === 0")

@@ -19,7 +19,7 @@ from raycaster.golden.engines import model_of
 from raycaster.golden.picture import shown
 from raycaster.program import scene_words
 from raycaster.registers import register_map
-from raycaster.rtl.engines import BEAM, EXACT
+from raycaster.rtl.engines import EXACT, SPAN
 from raycaster.scene import load_scene, packaged_scenes
 from raycaster.screens import SCREENS, Screen
 from raycaster.sim.register_model import COMMIT_CLOCKS, LiveScene, SceneFollower
@@ -34,7 +34,7 @@ WORDS = 1024
 
 QUOTIENTS = [(bits, rounding) for bits in (0, 3, 8) for rounding in ("truncate", "nearest")]
 ENGINES = [
-    *({"engine": engine.facts.name, **dict.fromkeys(engine.facts.features, True)} for engine in (EXACT, BEAM)),
+    *({"engine": engine.facts.name, **dict.fromkeys(engine.facts.features, True)} for engine in (EXACT, SPAN)),
     *(
         {"engine": "seed", "fraction_bits": bits, "rounding": rounding, "materials": True, "patterns": True}
         for bits, rounding in QUOTIENTS
@@ -165,7 +165,7 @@ def test_random_worlds(golden, options):
 @pytest.mark.parametrize("rows", [240, 200, 180])
 def test_every_screen(golden, rows, random):
     """Every screen is drawn at its finest scale."""
-    config = configure(engine="beam", rows=rows, turn=True, materials=True, patterns=True, reflections=2)
+    config = configure(engine="span", rows=rows, turn=True, materials=True, patterns=True, reflections=2)
     if rows == 180:
         config = replace(config, scale=2)
     assert_drawn(golden, config, random_words(random, config), f"{rows} rows")

@@ -22,7 +22,7 @@ tabs.engines = {
     const compute = async (side, model) => {
       statuses[side].textContent = "computing";
       const machine = (machines[side] = await Machine.instead(machines[side], model));
-      await machine.call("load", readScene(RayCaster.scenes[selects.scene.value], "", machine.design.rectangles));
+      await machine.call("load", readScene(sceneText(selects.scene.value), "", machine.design.rectangles));
       drawn[side] = await machine.frame();
     };
 
@@ -40,7 +40,7 @@ tabs.engines = {
     const all = async () => {
       RayCaster.state.engines = {};
       differs = null;
-      const fraction = selects.fraction.value, error = refusal(readScene(RayCaster.scenes[selects.scene.value], ""));
+      const fraction = selects.fraction.value, error = refusal(readScene(sceneText(selects.scene.value), ""));
       canvases.seed.hidden = error !== "";
       if (error) {
         delete drawn.seed;
@@ -70,6 +70,6 @@ tabs.engines = {
     selects.fraction.addEventListener("change", ask);
     box.addEventListener("change", paint);
     ask();
-    return {};
+    return { run: followRoom(selects.scene, ask) };
   },
 };

@@ -2,6 +2,8 @@
 // The hardware as seen by the page: machines in workers, and the check of their pictures.
 "use strict";
 
+const MOST_SHARES = 8; // workers that share the rows of a frame
+
 const RayCaster = {
   // Filled by the other files of the page: models, scenes, schema, worker.
   models: {},
@@ -26,7 +28,7 @@ const RayCaster = {
     }
     const { design, wasm, program } = RayCaster.models[name];
     const text = program ? new TextDecoder().decode(await RayCaster.unpack(program)) : "";
-    return { design, wasm: await RayCaster.unpack(wasm), program: text };
+    return { design, module: await WebAssembly.compile(await RayCaster.unpack(wasm)), program: text };
   },
 };
 
@@ -62,10 +64,10 @@ class Remote {
 class Machine extends Remote {
   static async start(name) {
     const machine = new Machine();
-    const { design, wasm, program } = await RayCaster.model(name);
+    const { design, module, program } = await RayCaster.model(name);
     machine.name = name;
     machine.design = design;
-    await machine.call("start", wasm, design, program);
+    await machine.call("start", module, design, program);
     return machine;
   }
 
@@ -103,12 +105,59 @@ class Machine extends Remote {
   }
 }
 
+// Machines with the same design and scene, which share the rows of each frame and hand over runs of one colour.
+class Drawing {
+  static async start(name, count = Math.max(1, Math.min(MOST_SHARES, navigator.hardwareConcurrency ?? 1))) {
+    const drawing = new Drawing();
+    const { design, module } = await RayCaster.model(name);
+    Object.assign(drawing, { name, design, shares: Array.from({ length: count }, () => new Remote()) });
+    await Promise.all(drawing.shares.map((share) => share.call("start", module, design, "")));
+    return drawing;
+  }
+
+  // Return a running design of this name: the given one, or a new one that replaces it.
+  static async instead(drawing, name) {
+    if (drawing?.name === name) return drawing;
+    drawing?.end();
+    return Drawing.start(name);
+  }
+
+  end() {
+    for (const share of this.shares) share.end();
+  }
+
+  // Draw a frame of a scene, or of the last scene from a camera.
+  async frame({ scene = null, camera = null }) {
+    const stride = this.shares.length, { columns, rows } = this.design;
+    const parts = await Promise.all(
+      this.shares.map((share, skipped) => share.call("draw", { scene, camera, skipped, stride })),
+    );
+    const pixels = new Uint8Array(4 * columns * rows);
+    for (const { runs } of parts) paint(new Uint32Array(pixels.buffer), runs, columns);
+    RayCaster.plant?.(pixels, columns);
+    const clocks = parts.reduce((sum, part) => sum + part.clocks, this.design.first_start);
+    const runs = parts.reduce((sum, part) => sum + part.runs.length / 2, 0);
+    return { pixels, words: parts[0].words, clocks, runs, milliseconds: Math.max(...parts.map((part) => part.milliseconds)) };
+  }
+}
+
+// Paint runs: for each its row in the upper half of a number and its end in the lower one, and then its colour.
+function paint(pixels, runs, columns) {
+  let row = -1, begin = 0;
+  for (let index = 0; index < runs.length; index += 2) {
+    const place = runs[index], first = (place >>> 16) * columns;
+    if (place >>> 16 !== row) begin = first;
+    row = place >>> 16;
+    pixels.fill(runs[index + 1], begin, (begin = first + (place & 0xffff)));
+  }
+}
+
 // Checks as many pictures as time allows.
 class Judge extends Remote {
   static async start() {
     const judge = new Judge();
     judge.busy = false;
-    await judge.call("start", (await RayCaster.model("golden")).wasm, {});
+    await judge.call("start", (await RayCaster.model("golden")).module, {});
     return judge;
   }
 

@@ -49,8 +49,7 @@ function check(error) {
 const rgb = ([red, green, blue]) => (red << 16) | (green << 8) | blue;
 
 const calls = {
-  async start(wasm, ofDesign, program) {
-    const module = await WebAssembly.compile(wasm);
+  async start(module, ofDesign, program) {
     exported = (await WebAssembly.instantiate(module, system(module))).exports;
     design = ofDesign;
     exported._initialize?.();
@@ -93,6 +92,21 @@ const calls = {
     const words = bytes(exported.live_words(), 4096).slice();
     const text = new TextDecoder().decode(bytes(exported.text(), exported.text_size()));
     return { pixels, words, clocks, busy: exported.busy(), milliseconds, text };
+  },
+
+  // Draw the rows of this share of a frame; the scene or only a camera is committed first, if given.
+  draw({ scene = null, camera = null, skipped = 0, stride = 1 }) {
+    const began = performance.now();
+    if (scene) calls.load(scene);
+    else if (camera) {
+      calls.look(camera.position, camera.basis);
+      check(exported.commit());
+    }
+    const clocks = exported.draw(skipped, stride);
+    const milliseconds = performance.now() - began;
+    const runs = new Uint32Array(bytes(exported.runs(), 8 * exported.run_count()).slice().buffer);
+    const words = skipped ? null : bytes(exported.live_words(), 4096).slice();
+    return { runs, words, clocks, milliseconds };
   },
 
   // Run a frame and record the ray unit of a pixel: design.taps.count numbers for each of its clocks.

@@ -11,9 +11,27 @@ function fill(select, names, chosen) {
   select.replaceChildren(...names.map((name) => new Option(name, name, false, name === chosen)));
 }
 
+const OWN = "your room";
+
+// Offer the packaged scenes and the room; choose the room if it is none of these.
 function fillScenes(select) {
-  fill(select, Object.keys(RayCaster.scenes), RayCaster.walk.first);
+  const { room } = RayCaster, isOwn = room.text !== "" && !room.isPackaged;
+  fill(select, [...(room.text ? [OWN] : []), ...Object.keys(RayCaster.scenes)], isOwn ? OWN : RayCaster.walk.first);
 }
+
+// Return a function that a tab calls each time it is shown: the room is a choice as soon as there is one, and is drawn
+// again if it has changed.
+function followRoom(select, ask) {
+  const { room } = RayCaster;
+  let { text } = room;
+  return () => {
+    if (room.text && select.options[0].value !== OWN) select.prepend(new Option(OWN));
+    if (select.value === OWN && text !== room.text) ask();
+    ({ text } = room);
+  };
+}
+
+const sceneText = (name) => (name === OWN ? RayCaster.room.text : RayCaster.scenes[name]);
 
 const rgb = ([red, green, blue]) => (red << 16) | (green << 8) | blue;
 
@@ -23,6 +41,14 @@ const counted = (count, noun) => `${count.toLocaleString("en")} ${noun}${count =
 function refusal(scene) {
   const reason = Object.entries(RayCaster.seed.lacks).findLast(([look]) => scene.needs[look])?.[1];
   return reason ? `The seed engine refuses this scene: ${reason.replace("the seed engine", "it")}.` : "";
+}
+
+// Return the fastest model that draws a scene.
+function modelOf(scene) {
+  return RayCaster.walk.models.find(
+    ({ features, reflections, rectangles }) => reflections >= scene.reflections && rectangles >= scene.rect.length &&
+      Object.entries(scene.needs).every(([name, isNeeded]) => !isNeeded || features.includes(name)),
+  );
 }
 
 // Read a scene file's text into the form that the hardware loads.
@@ -39,14 +65,16 @@ class Held {
     this.names = new Set();
     const byKey = new Map(Object.entries(keys).flatMap(([name, of]) => of.map((key) => [key, name])));
     const set = (name, held) => (held ? this.names.add(name) : this.names.delete(name));
-    const isWriting = (event) => event.target.matches("textarea, select, input");
+    // A field takes the keys that it understands; letters in a menu are for the picture.
+    const isTaken = ({ target, key }) =>
+      target.matches("textarea, input") || (target.matches("select, [role=tab]:focus-visible, summary") && key.length > 1);
     const active = () => !canvas.closest("section").hidden;
     document.addEventListener("keydown", (event) => {
       const name = byKey.get(event.key.toLowerCase());
-      if (!name || isWriting(event) || !active() || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (!name || isTaken(event) || !active() || event.ctrlKey || event.metaKey || event.altKey) return;
       event.preventDefault();
       set(name, true);
-    });
+    }, true);
     document.addEventListener("keyup", (event) => set(byKey.get(event.key.toLowerCase()), false));
     addEventListener("blur", () => this.names.clear());
     for (const name of names) {
@@ -135,28 +163,26 @@ function showFailure(id, error) {
   RayCaster.state[id] = { error: error.message };
 }
 
-// The camera of a walk, with the same steps and turns as in the desktop window.
+// The camera of a walk.
 class Walker {
   constructor(scene) {
     this.place = [...scene.camera.position];
     ({ yaw: this.yaw, pitch: this.pitch, roll: this.roll } = scene.camera);
   }
 
-  move(held, [right, down], turns) {
-    const { step, turn, drag, steepest, world_size: size } = RayCaster.walk;
-    const pair = (more, less) => held.has(more) - held.has(less);
-    if (turns) {
-      this.yaw += turn * pair("turn right", "turn left") + drag * right;
-      this.yaw -= 360 * Math.round(this.yaw / 360);
-      const pitch = this.pitch + turn * pair("look up", "look down") - drag * down;
-      this.pitch = Math.max(-steepest, Math.min(steepest, pitch));
-    }
+  move(held, [right, down], seconds) {
+    const { speed, turn, drag, steepest, world_size: size } = RayCaster.walk;
+    const pair = (more, less) => seconds * (held.has(more) - held.has(less));
+    this.yaw += turn * pair("turn right", "turn left") + drag * right;
+    this.yaw -= 360 * Math.round(this.yaw / 360);
+    const pitch = this.pitch + turn * pair("look up", "look down") - drag * down;
+    this.pitch = Math.max(-steepest, Math.min(steepest, pitch));
     const angle = (this.yaw * Math.PI) / 180;
-    const along = step * pair("forward", "back"), across = step * pair("right", "left");
+    const along = speed * pair("forward", "back"), across = speed * pair("right", "left");
     const steps = [
       along * Math.cos(angle) - across * Math.sin(angle),
       along * Math.sin(angle) + across * Math.cos(angle),
-      step * pair("rise", "sink"),
+      speed * pair("rise", "sink"),
     ];
     this.place = this.place.map((place, axis) => Math.max(0, Math.min(size - 1, place + steps[axis])));
   }
@@ -167,65 +193,6 @@ class Walker {
 }
 
 const tabs = {
-  walk: {
-    async open() {
-      const canvas = find("walk-picture"), select = find("walk-scene"), text = find("walk-text");
-      const show = new Show("walk", canvas, find("walk-status"));
-      const held = new Held(RayCaster.walk.buttons, RayCaster.walk.keys, canvas, find("walk-pad"));
-      let walker = null, drag = [0, 0], machine = null, next = null, scene = null;
-      canvas.addEventListener("pointermove", (event) => {
-        if (event.buttons & 1) drag = [drag[0] + event.movementX, drag[1] + event.movementY];
-      });
-      canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
-      const judge = await Judge.start();
-
-      const use = async (source, name) => {
-        find("walk-error").textContent = "";
-        try {
-          next = readScene(source, name, RayCaster.walk.rectangles);
-        } catch (error) {
-          find("walk-error").textContent = error.message;
-        }
-      };
-      const choose = () => {
-        text.value = RayCaster.scenes[select.value];
-        use(text.value, `${select.value}.toml`);
-      };
-      select.addEventListener("change", choose);
-      find("walk-use").addEventListener("click", () => use(text.value, "scene"));
-      text.addEventListener("dragover", (event) => event.preventDefault());
-      text.addEventListener("drop", async (event) => {
-        const [file] = event.dataTransfer.files;
-        if (!file) return;
-        event.preventDefault();
-        text.value = await file.text();
-        use(text.value, file.name);
-      });
-      fillScenes(select);
-      choose();
-
-      // The first design with the features that the scene needs is the fastest.
-      const frame = async () => {
-        if (next) {
-          scene = next;
-          next = null;
-          const name = RayCaster.walk.models.find(
-            ({ features, reflections }) => reflections >= scene.reflections &&
-              Object.entries(scene.needs).every(([name, isNeeded]) => !isNeeded || features.includes(name)),
-          ).name;
-          machine = await Machine.instead(machine, name);
-          await machine.call("load", scene);
-          walker = new Walker(scene);
-          return { ...(await machine.frame()), camera: walker.camera };
-        }
-        walker.move(held, drag, machine.design.turn);
-        drag = [0, 0];
-        return { ...(await machine.frame({ camera: walker.camera })), camera: walker.camera };
-      };
-      return { run: () => show.run({ get design() { return machine.design; } }, judge, frame) };
-    },
-  },
-
   game: {
     async open() {
       const canvas = find("game-picture"), said = find("game-text");
@@ -249,6 +216,13 @@ const tabs = {
 };
 
 const opened = {};
+const FIRST_TAB = "room";
+
+// Return the tab that an address names; a room in the address has the tab of rooms.
+function tabOf(hash) {
+  const [name] = hash.slice(1).split("=");
+  return name in tabs ? name : FIRST_TAB;
+}
 
 async function open(id) {
   for (const tab of document.querySelectorAll("[role=tab]")) {
@@ -279,7 +253,7 @@ addEventListener("DOMContentLoaded", () => {
   if (RayCaster.test && planted) {
     RayCaster.plant = (pixels, columns) => (pixels[4 * (planted[1] * columns + planted[0])] ^= 0x80);
   }
-  const go = () => open(location.hash.slice(1) in tabs ? location.hash.slice(1) : "walk");
+  const go = () => open(tabOf(location.hash));
   addEventListener("hashchange", go);
   document.addEventListener("visibilitychange", () => document.hidden || go());
   go();

@@ -293,7 +293,7 @@ tabs.pixel = {
     };
 
     const compute = async () => {
-      const name = selects.scene.value, text = RayCaster.scenes[name];
+      const name = selects.scene.value, text = sceneText(name);
       RayCaster.state.pixel = { done: false };
       status.className = "";
       status.textContent = "simulating a frame, clock by clock";
@@ -308,8 +308,8 @@ tabs.pixel = {
       }
       const column = inputs.column.valueAsNumber, row = inputs.row.valueAsNumber;
       const scene = readScene(text, name, design.rectangles);
-      if (loaded !== name) await machine.call("load", scene);
-      loaded = name;
+      if (loaded !== text) await machine.call("load", scene);
+      loaded = text;
       const frame = await machine.watch(column, row);
       await judge.look(frame, design);
       show(scene, column, row, frame, await judge.call("explain", column, row, design.columns));
@@ -325,6 +325,6 @@ tabs.pixel = {
       ask();
     });
     ask();
-    return {};
+    return { run: followRoom(selects.scene, ask) };
   },
 };

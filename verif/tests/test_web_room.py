@@ -1,0 +1,261 @@
+# SPDX-License-Identifier: MIT
+"""The page's room in Chromium: drawn by the hardware while it is edited."""
+
+from __future__ import annotations
+
+import tomllib
+from typing import Any
+
+import pytest
+from conftest import PAGE_MODELS, page_state
+from test_web import golden_hash
+
+from raycaster.design.decide import configure
+from raycaster.golden.frames import scene_cycles
+from raycaster.scene import Scene, load_scene, packaged_scenes
+
+CONFIG = configure(**PAGE_MODELS["plain"])
+SCREEN = CONFIG.screen_geometry
+GRID = 8
+FRONT = 'name = "brick house, front"\ncorners = [[150, 60, 0], [150, 180, 110]]'
+PHONES = [(390, 844), (844, 390)]
+DROP = """async ([name, source]) => {
+    const data = new DataTransfer();
+    data.items.add(new File([source], name));
+    find("room-text").dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true }));
+}"""
+
+
+def open_room(page: Any, address: str) -> dict:
+    """Open the page and return the state of the room once its picture is checked."""
+    page.goto(address)
+    return checked(page)
+
+
+def checked(page: Any) -> dict:
+    """Return the state of the room once the present text is drawn and its picture checked."""
+    drawn = "state && state.version === RayCaster.room.version && state.wrong !== null && state.wrong !== undefined"
+    page.wait_for_function(f"(() => {{ const state = RayCaster.state.room; return {drawn}; }})()")
+    return page.evaluate("RayCaster.state.room")
+
+
+@pytest.fixture
+def room(page, site):
+    """Return the page, which shows a room."""
+    page.set_viewport_size({"width": 1280, "height": 800})
+    open_room(page, (site / "index.html").as_uri())
+    return page
+
+
+def choose(page: Any, name: str) -> str:
+    """Choose a packaged scene; return its text."""
+    page.click(f"#room-gallery [data-scene={name}]")
+    return packaged_scenes()[name].read_text()
+
+
+def text_of(page: Any) -> str:
+    return page.input_value("#room-text")
+
+
+def scene_of(text: str) -> Scene:
+    return Scene.model_validate(tomllib.loads(text))
+
+
+def assert_drawn(page: Any) -> None:
+    """Assert that the picture is that of the text, and that all comparisons so far found no difference."""
+    state, golden = checked(page), golden_hash(scene_of(text_of(page)), screen=SCREEN)
+    assert (state["hash"], state["wrong"], state["different"]) == (golden, 0, 0)
+
+
+def drag(page: Any, grip: str, plan: str, across: float, up: float) -> None:
+    """Drag a part of a plan by world units."""
+    # In one call, as the plan is drawn again with each frame.
+    script = """([grip, plan]) => {
+        const [part] = [...find(`room-${plan}`).querySelectorAll(`[data-grip="${grip}"]`)].slice(-1);
+        const box = part.getBoundingClientRect(), world = find(`room-${plan}`).querySelector(".world");
+        return [box.x + box.width / 2, box.y + box.height / 2, world.getBoundingClientRect().width / 511];
+    }"""
+    x, y, unit = page.evaluate(script, [grip, plan])
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + unit * across / 2, y - unit * up / 2)
+    page.mouse.move(x + unit * across, y - unit * up)
+    page.mouse.up()
+
+
+def test_a_wall_is_dragged(room):
+    """The text and the picture follow, and undo and redo step through both."""
+    text = choose(room, "evening")
+    assert_drawn(room)
+    room.select_option("#room-rect", "1")
+    drag(room, "body 1", "above", 42, -16)
+    corners = scene_of(text_of(room)).rect[1].corners
+    assert corners == ((136, 104, 0), (136, 224, 110)), "snapped to the grid"
+    assert text_of(room) == text.replace("[[150, 60, 0], [150, 180, 110]]", "[[136, 104, 0], [136, 224, 110]]")
+    assert_drawn(room)
+    drag(room, "corner 1 1 -1", "above", 24, 0)
+    assert scene_of(text_of(room)).rect[1].corners == ((136, 104, 0), (136, 248, 110))
+    drag(room, "camera", "above", 32, 16)
+    drag(room, "light", "side", 62, 10)
+    moved = scene_of(text_of(room))
+    assert moved.camera.position == (16, 280, 230) and moved.light and moved.light.position == (80, 0, 272)
+    assert_drawn(room)
+    for _ in range(4):
+        room.keyboard.press("Control+z")
+    assert text_of(room) == text
+    assert_drawn(room)
+    assert room.locator("#room-undo").is_enabled(), "the scene before"
+    for _ in range(4):
+        room.click("#room-redo")
+    assert scene_of(text_of(room)) == moved
+
+
+def test_rectangles_come_and_go(room):
+    choose(room, "boxes")
+    count = len(scene_of(text_of(room)).rect)
+    room.click("#room-add")
+    room.select_option("#room-mirror", "0.75")
+    room.select_option("#room-pattern", "rows")
+    room.fill("#room-colour", "#123456")
+    room.fill("#room-corner-0-z", "40")
+    room.fill("#room-label", 'a "shelf"')
+    added = scene_of(text_of(room)).rect[count]
+    assert (added.name, added.mirror, added.pattern, added.colour) == ('a "shelf"', 0.75, "rows", (18, 52, 86))
+    assert added.corners[0][2] == 40
+    room.click("#room-duplicate")
+    assert scene_of(text_of(room)).rect[-2:] == (added, added)
+    room.select_option("#room-pattern", "plain")
+    room.click("#room-box")
+    room.click("#room-light")
+    room.select_option("#room-reflections", "3")
+    assert_drawn(room)
+    assert checked(room)["model"] == "full"
+    room.select_option("#room-rect", str(count))
+    room.click("#room-remove")
+    assert len(scene_of(text_of(room)).rect) == count + 7
+    assert_drawn(room)
+
+
+def test_text_says_its_line(room):
+    text = choose(room, "evening")
+    for bad, line in ((text.replace("colour = ", "color = ", 1), 18), (text.replace("[light]", "[light"), 11)):
+        room.fill("#room-text", bad)
+        assert room.text_content("#room-lines .wrong").strip() == str(line)
+        assert room.text_content("#room-error").startswith("evening.toml: ")
+    # The last correct room stays, and goes on with the next correct text.
+    room.fill("#room-text", text.replace("[150, 180, 110]", "[150, 180, 200]"))
+    assert room.text_content("#room-error") == ""
+    assert_drawn(room)
+
+
+def test_a_link_and_a_file(room, site):
+    """The address holds the room, and a dropped file replaces it."""
+    own = choose(room, "evening").replace("#e8a87c", "#28a87c") + "# Grüße\n"
+    room.fill("#room-text", own)
+    room.wait_for_function("location.hash.startsWith('#room=')")
+    address = room.url
+    room.goto("about:blank")
+    open_room(room, address)
+    assert text_of(room) == own
+    assert_drawn(room)
+    room.click("#room-link")
+    room.wait_for_function("find('room-said').textContent.startsWith('The link is')")
+    other = packaged_scenes()["boxes"].read_text()
+    room.evaluate(DROP, ["mine.toml", other])
+    room.wait_for_function("find('room-name').textContent === 'mine.toml'")
+    assert text_of(room) == other
+    assert_drawn(room)
+    with room.expect_download() as download:
+        room.click("#room-save")
+    assert download.value.suggested_filename == "mine.toml" and download.value.path().read_bytes() == other.encode()
+
+
+def test_every_packaged_scene_keeps_its_text(room):
+    """Values that are written again do not change a byte."""
+    script = """(texts) => texts.map((text) => {
+        const { scene } = RayCasterScene.read(text, "scene", RayCaster.schema);
+        let written = RayCasterText.set(text, "camera", 0, "position", scene.camera.position);
+        scene.rect.forEach(({ corners }, index) =>
+            (written = RayCasterText.set(written, "rect", index, "corners", corners)));
+        return written;
+    })"""
+    texts = [path.read_text() for path in packaged_scenes().values()]
+    assert room.evaluate(script, texts) == texts
+
+
+def test_a_click_finds_the_line(room):
+    text = choose(room, "evening")
+    checked(room)
+    box = room.locator("#room-picture").bounding_box()
+    room.mouse.click(box["x"] + box["width"] * 0.5, box["y"] + box["height"] * 0.97)
+    room.wait_for_function("RayCaster.room.selected >= 0")
+    selected = room.evaluate("RayCaster.room.selected")
+    line = text[: text.index(f'name = "{scene_of(text).rect[selected].name}"')].count("\n")
+    assert room.text_content("#room-lines .chosen >> nth=0").strip() == str(line)
+
+
+def test_keys_walk(room):
+    """After a click on a scene, and with a menu chosen, letters walk; in the text they are letters."""
+    start = choose(room, "boxes") and scene_of(text_of(room)).camera.position
+    room.select_option("#room-grid", "16")
+    room.focus("#room-grid")
+    room.keyboard.down("w")
+    room.wait_for_function(f"RayCaster.state.room.camera.position[0] > {start[0] + 20}")
+    room.keyboard.up("w")
+    assert room.input_value("#room-grid") == "16"
+    room.click("#room-camera")
+    copied = room.evaluate("RayCaster.state.room.camera.position")
+    assert list(scene_of(text_of(room)).camera.position) == copied
+    assert_drawn(room)
+    room.focus("#room-text")
+    room.keyboard.press("w")
+    assert room.text_content("#room-error") != ""
+    assert room.evaluate("RayCaster.state.room.camera.position") == copied
+
+
+def test_clocks_are_the_hardware_s(room):
+    choose(room, "boxes")
+    state, scene = checked(room), load_scene(packaged_scenes()["boxes"])
+    assert state["model"] == "plain"
+    assert state["clocks"] == scene_cycles(scene, CONFIG)
+    assert f"{25e6 / state['clocks']:.0f} at 25 MHz" in room.text_content("#room-cost")
+
+
+def test_a_planted_pixel_is_counted(room):
+    room.check("#room-plant")
+    room.wait_for_function("RayCaster.state.room.wrong === 1")
+    assert "different: 1." in room.text_content("#room-compared.wrong")
+    pixel = "find('room-picture').getContext('2d').getImageData(40, 30, 1, 1).data"
+    room.wait_for_function(f"[...{pixel}].join() === '255,0,255,255'")
+
+
+@pytest.mark.parametrize("size", PHONES, ids=lambda size: f"{size[0]}x{size[1]}")
+def test_a_phone(browser, site, size):
+    """Nothing is wider than the screen, and a thumb walks and looks around."""
+    width, height = size
+    context = browser.context.browser.new_context(
+        viewport={"width": width, "height": height}, has_touch=True, is_mobile=True
+    )
+    with context:
+        page = context.new_page()
+        page.set_default_timeout(60_000)
+        start = open_room(page, (site / "index.html").as_uri())["camera"]
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        picture = page.locator("#room-picture").bounding_box()
+        assert picture["height"] > 200 and picture["y"] + picture["height"] <= height
+        forward = page.locator("#room-pad button", has_text="forward")
+        assert forward.bounding_box()["y"] < height
+        forward.dispatch_event("pointerdown")
+        page.wait_for_function(f"RayCaster.state.room.camera.position[0] > {start['position'][0] + 10}")
+        forward.dispatch_event("pointerup")
+        page.wait_for_function("RayCaster.state.room.wrong === 0")
+
+
+def test_other_tabs_take_the_room(room):
+    """The engines' tab draws the room as it is, again when it has changed."""
+    room.fill("#room-text", choose(room, "boxes").replace("title", "# Mine\ntitle"))
+    room.click("#tab-engines")
+    state = page_state(room, "engines")
+    assert room.input_value("#engines-scene") == "your room"
+    tiny = configure(**PAGE_MODELS["exact"]).screen_geometry
+    assert state["exact"] == {"hash": golden_hash(load_scene(packaged_scenes()["boxes"]), screen=tiny), "wrong": 0}
