@@ -85,6 +85,15 @@ def test_more_random_worlds(name, random):
         check(any_frame(random, config), TINY)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", DESIGNS)
+def test_random_worlds_at_1920x1080(name, random):
+    """Two million rays each."""
+    config = span_config(**{"screen": "tiny", "rectangles": 12} | DESIGNS[name])
+    for _ in range(20):
+        check(any_frame(random, config), FULL_HD)
+
+
 def test_the_column_of_a_change():
     """One formula serves lines that rise and lines that fall, to 0 and across it."""
     for growth in (-7, -2, -1, 1, 2, 7):
