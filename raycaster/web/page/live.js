@@ -8,6 +8,7 @@ const CLICK_REACH = 4;           // most movement of a click, in pixels of the p
 const ADDRESS_DELAY = 400;       // ms from a change to the address with it
 const TYPING_DELAY = 600;        // ms without a key after which typing is one step of undo
 const LONGEST_STEP = 0.1;        // s, most that the camera moves in one frame
+const FASTEST = 70, SLOWEST = 2; // frames per second: more than the display shows, and less than a pause
 const NEW_RECTANGLE = { name: "new", colour: "#8fa3c0", mirror: 0 };
 const NEW_SIZE = 64, NEW_DISTANCE = 120;
 
@@ -306,18 +307,15 @@ tabs.room = {
     addEventListener("hashchange", fromAddress);
     if (!(await fromAddress())) open(RayCaster.scenes[RayCaster.walk.first], `${RayCaster.walk.first}.toml`);
 
-    const report = (frame) => {
-      const { design } = drawing, size = design.columns * design.rows;
-      find("room-status").textContent = `${rate.toFixed(0)} frames per second, ${counted(frame.clocks, "clock")} and ` +
-        `${counted(frame.runs, "run")} per frame, ${counted(drawing.shares.length, "simulated unit")}`;
-      const { position } = walker.camera;
+    const report = (frame, { name, shares }) => {
+      const { position } = frame.camera, speed = rate ? `${rate.toFixed(0)} frames per second, ` : "";
+      find("room-status").textContent = `${speed}${counted(frame.clocks, "clock")} and ${counted(frame.runs, "run")} ` +
+        `per frame, ${counted(shares.length, "simulated unit")}`;
       find("room-place").textContent =
         `Camera at ${position.join(", ")}, yaw ${walker.yaw.toFixed(0)}°, pitch ${walker.pitch.toFixed(0)}°`;
-      showCost(frame, design, room.scene);
-      RayCaster.state.room = {
-        hash: pictureHash(frame.pixels), clocks: frame.clocks, runs: frame.runs, frames, rate, version: room.version,
-        camera: frame.camera, model: drawing.name, size,
-      };
+      showCost(frame, frame.design, room.scene);
+      const { clocks, runs, camera, version } = frame;
+      RayCaster.state.room = { hash: pictureHash(frame.pixels), clocks, runs, frames, rate, version, camera, model: name };
       reportChecks();
     };
     const reportChecks = () => {
@@ -331,54 +329,79 @@ tabs.room = {
       });
     };
 
-    let drawnVersion = -1, drawnCamera = "", marked = 0;
-    const next = async (seconds) => {
+    // Begin a frame if the room or the camera has changed; null if not.
+    let begunVersion = -1, begunCamera = "";
+    const begin = async (seconds) => {
+      if (!room.scene) return null;
       walker.move(held, look, seconds);
       look = [0, 0];
-      const { camera } = walker, isNew = room.version !== drawnVersion, view = JSON.stringify(camera);
-      if (!isNew && view === drawnCamera) {
-        if (checks.last === frames && marked !== frames && checks.verdict?.count) {
-          mark(canvas, checks.verdict.wrong, "#ff00ff");
-          marked = frames;
-        }
-        if (RayCaster.state.room) reportChecks();
-        return false;
-      }
-      const scene = isNew ? { ...room.scene, camera, basis: camera.basis } : null;
-      drawnVersion = room.version;
-      drawnCamera = view;
+      const { camera } = walker, { version } = room, view = JSON.stringify(camera);
+      if (version === begunVersion && view === begunCamera) return null;
+      const scene = version === begunVersion ? null : { ...room.scene, camera, basis: camera.basis };
+      begunVersion = version;
+      begunCamera = view;
       if (scene) {
         const { name } = modelOf(scene);
         if (drawing?.name !== name) rate = 0;
         drawing = await Drawing.instead(drawing, name);
       }
-      const began = performance.now(), frame = { ...(await drawing.frame({ scene, camera })), camera };
-      draw(canvas, frame.pixels, drawing.design);
+      return { drawing, version, camera, frame: drawing.frame({ scene, camera }) };
+    };
+
+    let shownAt = 0, marked = 0;
+    const show = (begun, frame) => {
+      last = { ...frame, camera: begun.camera, version: begun.version, design: begun.drawing.design };
+      draw(canvas, frame.pixels, last.design);
       frames++;
-      last = { ...frame, design: drawing.design };
-      checks.offer(frame, drawing.design, frames);
-      const now = 1000 / (performance.now() - began);
-      rate = rate ? 0.9 * rate + 0.1 * now : now;
-      report(frame);
+      checks.offer(frame, last.design, frames);
+      const now = performance.now(), speed = 1000 / (now - shownAt);
+      shownAt = now;
+      // The first frame after a pause has no speed.
+      if (speed > SLOWEST) rate = rate ? 0.9 * rate + 0.1 * speed : speed;
+      report(last, begun.drawing);
       drawPlans();
-      return true;
+    };
+    const rest = () => {
+      if (checks.last === frames && marked !== frames && checks.verdict?.count) {
+        mark(canvas, checks.verdict.wrong, "#ff00ff");
+        marked = frames;
+      }
+      if (RayCaster.state.room) reportChecks();
+    };
+
+    const frameAfterFrame = async () => {
+      let before = performance.now(), begun = null;
+      const next = async () => {
+        const now = performance.now(), seconds = Math.min(LONGEST_STEP, (now - before) / 1000);
+        before = now;
+        return begin(seconds);
+      };
+      while (!panel.hidden && !document.hidden) {
+        begun ??= await next();
+        if (!begun) {
+          rest();
+          await new Promise(requestAnimationFrame);
+          continue;
+        }
+        const shown = begun, frame = await shown.frame;
+        // A fast frame waits for the display. The next one is drawn while this one is shown.
+        if (performance.now() - shownAt < 1000 / FASTEST) await new Promise(requestAnimationFrame);
+        begun = await next();
+        show(shown, frame);
+      }
+      // A frame that has begun when the tab is left is shown later, as it is.
+      if (begun) show(begun, await begun.frame);
     };
 
     let running = false;
     const run = async () => {
       if (running) return;
       running = true;
-      let before = performance.now();
-      const tick = () => new Promise(requestAnimationFrame);
-      while (!panel.hidden && !document.hidden) {
-        const now = performance.now(), seconds = Math.min(LONGEST_STEP, (now - before) / 1000);
-        before = now;
-        const drew = room.scene && (await next(seconds));
-        // A slow frame is followed by the next one at once, a fast one by the display's next.
-        if (!drew || performance.now() - now < 15) await tick();
-        else await new Promise((resolve) => setTimeout(resolve));
+      try {
+        await frameAfterFrame();
+      } finally {
+        running = false;
       }
-      running = false;
     };
     return { run };
   },
