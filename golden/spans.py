@@ -101,6 +101,9 @@ class Chain(NamedTuple):
     met: frozenset[int] = frozenset()
     """Axes of the mirrors met in the last mirror's point."""
 
+    mirror: tuple[int, int] = (0, 0)
+    """Axis and plane of the last mirror."""
+
 
 class Entry(NamedTuple):
     """A rectangle that a chain's rays meet in the columns from start to stop, at t = N / e."""
@@ -353,7 +356,7 @@ class Drawing:
         eye = tuple(2 * plane - one if axis == place else one for place, one in enumerate(chain.eye))
         back = tuple(one != (axis == place) for place, one in enumerate(chain.back))
         met = (chain.met if corner else frozenset()) | {axis}
-        return Chain(start, stop, eye, back, winner.distance, winner.ahead, met)
+        return Chain(start, stop, eye, back, winner.distance, winner.ahead, met, (axis, plane))
 
     # -- Surfaces
 
@@ -508,13 +511,16 @@ class Drawing:
     ) -> dict[int, Line]:
         """Return the lines that are not negative where a chain's rays meet a rectangle, by their numbers.
 
-        There are none if the plane is not ahead at either end of the chain. Number 0 is only needed if the others do
+        There are none if the plane is not ahead at either end of the chain, or if the rectangle is before the last
+        mirror. Number 0 is only needed if the others do
         not imply it: the rectangle is a point, or the slope may be 0 in some column; and for rays from the light, which
-        end at the surface. See `set_up` for the arguments.
+        end at the surface. So is number 5, unless the whole rectangle is beyond the last mirror. See `set_up` for the
+        arguments.
         """
         distance, ahead = self.approach(chain, rect, rays)
         first, last = ahead.at(chain.start) > 0, ahead.at(chain.stop - 1) > 0
-        if not distance or not (first or last):
+        sides = self.sides(chain, rect)
+        if not distance or not (first or last) or max(sides) < int(rect.axis == chain.mirror[0]):
             return {}
         lines = {}
         if surface:
@@ -525,9 +531,19 @@ class Drawing:
             aside = folded(rays or self.slope, u, chain.back[u])
             lines[1 + 2 * place] = combined(distance, aside, rect.low[u] - chain.eye[u], ahead)
             lines[2 + 2 * place] = combined(rect.high[u] - chain.eye[u], ahead, distance, aside)
-        if chain.distance:
+        if min(sides) < 1:
             lines[5] = combined(distance, chain.ahead, chain.distance, ahead, int(rect.axis in chain.met))
         return lines
+
+    @staticmethod
+    def sides(chain: Chain, rect: Rect) -> tuple[int, int]:
+        """Return 1, 0 or -1 for both ends of a rectangle along the last mirror's axis: beyond, on, or before it."""
+        if not chain.distance:
+            return 1, 1
+        axis, plane = chain.mirror
+        way = 1 if plane > chain.eye[axis] else -1
+        low, high = (way * (end - plane) for end in (rect.low[axis], rect.high[axis]))
+        return (low > 0) - (low < 0), (high > 0) - (high < 0)
 
     def vanishes(self, chain: Chain) -> bool:
         """Return True if each component of the slope is 0 in the chain, or changes its sign."""

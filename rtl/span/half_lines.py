@@ -9,6 +9,7 @@ from raycaster.rtl.common.by_axis import along_a, along_u, along_v, by_axis
 from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import AXIS_BITS, column_bits, eye_bits, index_bits, line_factor_bits
+from raycaster.rtl.span.mirror_side import mirror_side
 from raycaster.rtl.span.records import AHEAD, BEYOND, NUMBER_BITS, U_HIGH, U_LOW, V_HIGH, V_LOW
 
 
@@ -31,7 +32,9 @@ def half_lines(
     | `U_HIGH`, `V_HIGH` | (high - E[W]) e - N D'[W] |
     | `BEYOND` | N m - M e, less 1 if a mirror on that axis was met in the same point |
 
-    Without n, or with e <= 0 at both ends of the chain, there is no hit and no line. `AHEAD` is only asked where the
+    Without n, or with e <= 0 at both ends of the chain, there is no hit and no line; nor if the rectangle is before
+    the last mirror's plane, or on it as another mirror on that axis. `BEYOND` is only asked unless all of the rectangle
+    is beyond that plane. `AHEAD` is only asked where the
     others do not imply it: e <= 0 at one end, and the rectangle is a point, or the slope may be 0 in some column.
 
     Rays from the light, as if it were the eye of a chain, meet a surface at t = 1 / s, with s the e of that surface.
@@ -73,6 +76,7 @@ def half_lines(
     number = unsigned(NUMBER_BITS)
     mirrors = config.reflections > 0
     last_number = unsigned(NUMBER_BITS) if mirrors else tied(V_HIGH, NUMBER_BITS)
+    hidden, crosses, crosses_1 = (bit(), bit(), bit()) if mirrors else (tied(0, 1), tied(0, 1), tied(0, 1))
     mirror_axis = unsigned(AXIS_BITS) if mirrors else tied(0, AXIS_BITS)
     mirror_distance = signed(factor_bits) if mirrors else tied(0, Signed(factor_bits))
     rect_1, entry_1 = Rect(config), entry.twin()
@@ -201,7 +205,7 @@ def half_lines(
 
     @always_comb
     def judge():
-        skip.next = (n == 0) or not (ahead_left or ahead_right)
+        skip.next = (n == 0) or hidden or not (ahead_left or ahead_right)
         tested_ahead.next = lit or ((ahead_left != ahead_right) and (point or may_vanish))
         ready.next = (not issuing) or last
 
@@ -295,14 +299,25 @@ def half_lines(
         offset.next = whole_bound - eye_w
 
     if mirrors:
+        side = mirror_side(
+            clk=clk, chain=chain, rect=rects.rect, hidden=hidden, crosses=crosses, config=config
+        )  # fmt: skip
 
         @always_comb
         def see_mirror():
             mirror_axis.next = chain.axis
             mirror_distance.next = chain.distance
+
+        @always_comb
+        def see_last_number():
             last_number.next = V_HIGH
-            if chain.mirrored:
+            if crosses_1:
                 last_number.next = BEYOND
+
+        @always(clk.posedge)
+        def hold_side():
+            if accept:
+                crosses_1.next = crosses
 
     @always_comb
     def choose_line():

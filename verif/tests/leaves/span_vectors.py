@@ -296,7 +296,7 @@ def any_chain(
         eye = tuple(2 * plane - one if axis == place else one for place, one in enumerate(chain.eye))
         backs = tuple(one != (axis == place) for place, one in enumerate(chain.back))
         kept = chain.met if chain.distance and max(beyond) == 0 else frozenset()
-        chain, mirror = Chain(start, stop, eye, backs, abs(far), line, kept | {axis}), (axis, back)
+        chain, mirror = Chain(start, stop, eye, backs, abs(far), line, kept | {axis}, (axis, plane)), (axis, back)
     return chain, mirror
 
 
