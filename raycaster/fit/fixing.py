@@ -17,6 +17,7 @@ from raycaster.design.for_scene import Design, design_for
 from raycaster.errors import UserError
 from raycaster.fit.unneeded import at_the_edge, covered, label, needed, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene
+from raycaster.golden.frames import runs_of, scene_rows
 from raycaster.golden.world import Rectangles
 from raycaster.output import Console, Table
 from raycaster.scene import Rectangle, Scene
@@ -87,7 +88,7 @@ def configuration_of(
 
 
 def fix(path: Path, options: Mapping[str, Any], scope: str) -> Fixing:
-    """Build a scene into a design.
+    """Build a scene into a design. With the camera built in, lists of frames hold this scene alone.
 
     Args:
         path: the scene file.
@@ -114,7 +115,11 @@ def fix(path: Path, options: Mapping[str, Any], scope: str) -> Fixing:
         fixed = with_camera(fixed, scene)
     kept = {name: getattr(general.configuration, name) for name in ("engine", "rows", *FEATURES)}
     given = {**options, **kept, "reflections": reflections, "fixed": fixed}
-    design = Design(path, scene, configure(**given), reflections)
+    config = configure(**given)
+    if scope == "all" and config.facts.whole_frames and "list" not in options:
+        entries = runs_of(scene_rows(scene, config, reflections))
+        config = configure(**given, list=entries + entries % 2)
+    design = Design(path, scene, config, reflections)
     return Fixing(design, general, _omissions(scene, reasons, with_shadows=bool(fixed.shadows)))
 
 

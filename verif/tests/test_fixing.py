@@ -172,6 +172,17 @@ def test_units_are_as_few_as_possible():
     assert (fewer.design.configuration.units, fewer.general.configuration.rectangles) == (20, 12)
 
 
+def test_a_list_holds_the_built_in_scene():
+    """There is no entry to spare but one, as their number is even; a camera that moves may need the usual list."""
+    options = {"engine": "span", "screen": "tiny"}
+    design = fix(BOXES, options, "all").design
+    runs = runs_of(scene_rows(design.scene, design.configuration))
+    assert 0 <= design.configuration.list - runs <= 1
+    usual = configure(**options).list
+    assert fix(BOXES, options, "rects").design.configuration.list == usual > runs
+    assert fix(BOXES, {**options, "list": "4000"}, "all").design.configuration.list == 4000
+
+
 def test_passes_count_for_the_budget():
     rectangle = fixed_rectangle(load_scene(BOXES).rect[0])
     fixed = FixedScene((rectangle,) * 4, (0b0011, 0b1000))
