@@ -64,6 +64,13 @@ def frame_cycles(rows: Iterable[Row], columns: int, units: int = 1, places: int 
     return last + 1
 
 
+def model_for(scene: Scene, config: Configuration, reflections: int | None = None) -> SpanModel:
+    """Return the model of a design that draws a scene, with its own reflections if none are given."""
+    model = SpanModel.of_scene(scene, config.screen_geometry, reflections)
+    # A scene that is built in may lack rectangles that are not seen.
+    return replace(model, rectangles=Rectangles.of_fixed(config.fixed.rectangles)) if config.fixed else model
+
+
 def scene_cycles(scene: Scene, config: Configuration, reflections: int | None = None) -> int:
     """Return the cycles of a design's frame of a scene, with its own reflections if none are given.
 
@@ -74,11 +81,7 @@ def scene_cycles(scene: Scene, config: Configuration, reflections: int | None = 
 
 def scene_rows(scene: Scene, config: Configuration, reflections: int | None = None) -> list[Row]:
     """Return the rows of a design's frame of a scene, with its own reflections if none are given."""
-    screen = config.screen_geometry
-    model = SpanModel.of_scene(scene, screen, reflections)
-    if config.fixed:  # it may leave out rectangles that are not seen
-        model = replace(model, rectangles=Rectangles.of_fixed(config.fixed.rectangles))
-    return list(model.rows(screen, scene.camera.basis))
+    return list(model_for(scene, config, reflections).rows(config.screen_geometry, scene.camera.basis))
 
 
 def cycles_of(rows: Iterable[Row], config: Configuration) -> int:

@@ -10,6 +10,7 @@ from raycaster.configuration import Configuration
 from raycaster.design.for_scene import Design
 from raycaster.design.options import add_build_option, add_configuration_options, add_scene_argument
 from raycaster.errors import UserError
+from raycaster.fit.fixing import add_fix_option
 from raycaster.output import Console, check_replaceable, put, replaced
 from raycaster.scene import find_scene
 from raycaster.sim.job import Job
@@ -27,6 +28,9 @@ from raycaster.sim.simulator import (
 MARGIN = 32
 """Clocks after the end of the last row, in which its last pixels reach the pins."""
 
+LATEST = 20
+"""Frames of the monitor after which a whole frame of the scene should be shown."""
+
 
 def add_recording_options(parser: argparse.ArgumentParser, pixel: str) -> None:
     """Add the options that choose the design and the rows to record, with a help text for `--pixel`."""
@@ -34,6 +38,7 @@ def add_recording_options(parser: argparse.ArgumentParser, pixel: str) -> None:
     parser.add_argument("--pixel", metavar="COLUMN,ROW", help=pixel)
     add_simulator_option(parser)
     add_build_option(parser)
+    add_fix_option(parser)
     add_configuration_options(parser)
 
 
@@ -49,15 +54,21 @@ def pixel_place(text: str) -> tuple[int, int]:
     return int(column), int(row)
 
 
-def window_clocks(configuration: Configuration, first_row: int, last_row: int) -> tuple[int, int]:
-    """Compute when rows are computed and shown: the first clock since StartScreen, and the clock after the last.
+def window_of(configuration: Configuration, first_row: int, last_row: int) -> dict[str, int]:
+    """Describe when rows are computed and shown, for `wave_window.v`.
 
     A line buffer is filled while the previous row is shown, and StartScreen comes a row's time before the first row is
-    shown.
+    shown. Rows of whole frames are drawn at times of their own, before the frame is shown.
     """
-    row_cycles = configuration.screen_geometry.row_cycles
-    first = first_row if configuration.facts.line_buffered else first_row + 1
-    return first * row_cycles, (last_row + 2) * row_cycles + MARGIN
+    screen, facts = configuration.screen_geometry, configuration.facts
+    first = first_row if facts.line_buffered else first_row + 1
+    window = {"window_from": first * screen.row_cycles, "window_to": (last_row + 2) * screen.row_cycles + MARGIN}
+    if facts.whole_frames:
+        # Units that are ahead keep their runs until the rows above are complete.
+        window |= {"row_from": max(0, first_row - 1), "row_to": last_row + configuration.units}
+        window |= {"row_rest": configuration.units * screen.columns + MARGIN}
+        window["window_last"] = LATEST * screen.frame_cycles
+    return window
 
 
 def record(model: Model, design: Design, rows: tuple[int, int], target: Path) -> Path:
@@ -72,11 +83,12 @@ def record(model: Model, design: Design, rows: tuple[int, int], target: Path) ->
     Raises:
         SimulationError: the simulation failed.
     """
-    begin, end = window_clocks(design.configuration, *rows)
+    window = window_of(design.configuration, *rows)
     job = Job(design.configuration, scene=str(design.path.resolve()), reflections=design.reflections)
     with replaced(target) as filled:
         partial = filled.resolve()
-        plusargs = (f"+window_file={partial / model.wave_file}", f"+window_from={begin}", f"+window_to={end}")
+        options = {"window_file": partial / model.wave_file, **window}
+        plusargs = [f"+{name}={value}" for name, value in options.items()]
         try:
             run_bench(model, "raycaster.debug.wave_bench", job, partial, plusargs=plusargs)
             if not (partial / model.wave_file).exists():

@@ -25,13 +25,13 @@ from raycaster.debug.probes.ray import (
 )
 from raycaster.debug.recorder import add_recording_options, build_and_record, pixel_place
 from raycaster.debug.waves import Waves
-from raycaster.design.for_scene import design_for
 from raycaster.design.options import CommandParser, given_options
 from raycaster.errors import UserError
+from raycaster.fit.fixing import design_of
 from raycaster.golden.picture import colour_text
 from raycaster.output import Console, Table, printable
 
-PIXEL_EVENTS = ("done", "shown")
+PIXEL_EVENTS = ("mixed", "done", "listed", "shown")
 WRONG = "bold red"
 ERROR_DIGITS = 3
 
@@ -56,7 +56,7 @@ def show(ray: Ray, readings: Sequence[Reading], console: Console) -> None:
     console.print("\nthe pixel", style="bold")
     console.print(_others(ray, [reading for reading in readings if reading.probe.event in PIXEL_EVENTS], first))
     console.print(
-        "*: what the ray sees. left out: culled, as the ray cannot see it. exact: without rounding.", style="dim"
+        "*: what the ray sees. left out: not tested, as the ray cannot see it. exact: without rounding.", style="dim"
     )
     if first is None:
         console.print(
@@ -139,7 +139,7 @@ def _named(probe: Probe) -> str:
 
 def _label(ray: Ray, rectangle: int) -> str:
     """A rectangle's number and name."""
-    name = printable(ray.scene.rect[rectangle].name)
+    name = printable(ray.name(rectangle))
     return f"{rectangle} {name}" if name else str(rectangle)
 
 
@@ -213,13 +213,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         raise UserError(f"pixel: expected a ray's column and row, as in {as_typed('pixel', '160,120')}, got none")
     column, row = pixel_place(arguments.pixel)
     console = Console()
-    design = design_for(arguments.scene, given_options(arguments))
+    design = design_of(arguments.scene, given_options(arguments), arguments.fix, console)
     ray = Ray(design, row, column)
+    description = description_of(design.configuration, ray.unit)
     target = arguments.build / "trace" / design.name
     waves = build_and_record(arguments, design, (row, row), target, console)
     if waves is None:
         return 1
-    readings = read(Waves(waves), description_of(design.configuration, ray.unit), ray)
+    readings = read(Waves(waves), description, ray)
     show(ray, readings, console)
     console.print(f"The waveform of the pixel's row is {waves}", soft_wrap=True)
     return int(first_difference(readings) is not None)

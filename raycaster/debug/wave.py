@@ -16,9 +16,10 @@ from raycaster.debug.probes.ray import Ray
 from raycaster.debug.recorder import add_recording_options, build_and_record, pixel_place
 from raycaster.debug.wave_files import View, write_files
 from raycaster.debug.waves import Waves
-from raycaster.design.for_scene import Design, design_for
+from raycaster.design.for_scene import Design
 from raycaster.design.options import CommandParser, given_options
 from raycaster.errors import UserError
+from raycaster.fit.fixing import design_of
 from raycaster.output import Console
 
 
@@ -49,7 +50,7 @@ def write_view(path: Path, design: Design, ray: Ray) -> Path:
     events = description.events(samples, ray)
     cycles = [event.cycle for event in events if event.kind != "shown"] or [0, len(samples.times_ns) - 1]
     begin, end = map(samples.begin_ns, (cycles[0], max(cycles)))
-    view = View(description.groups(ray), design_states(design.configuration), begin, end)
+    view = View(description.groups(), design_states(design.configuration), begin, end)
     return write_files(waves, view)
 
 
@@ -73,13 +74,13 @@ def command_parser() -> CommandParser:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
-    design = design_for(arguments.scene, given_options(arguments))
+    console = Console(soft_wrap=True)
+    design = design_of(arguments.scene, given_options(arguments), arguments.fix, console)
     screen = design.configuration.screen_geometry
     column, row = pixel_place(arguments.pixel or f"{screen.centre_column},{screen.rows // 2}")
     ray = Ray(design, row, column)
     description_of(design.configuration, ray.unit)  # refuses before anything is built
     rows = rows_of(arguments.span, row, screen.rows)
-    console = Console(soft_wrap=True)
     target = arguments.build / "wave" / design.name
     waves = build_and_record(arguments, design, rows, target, console)
     if waves is None:

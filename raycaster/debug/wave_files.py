@@ -91,10 +91,11 @@ def _gtkwave(waves: Waves, view: View, filters: Mapping[tuple[str, str], Path]) 
     save.zoom_markers(-zoom, begin)
     save.signals_width(NAMES_WIDTH)
     save.sst_expanded(False)
+    labels = iter(_labels([_parts(name)[0] for names in view.groups.values() for name in names]))
     for group, names in view.groups.items():
-        labels = _labels([_parts(name)[0] for name in names])
         with save.group(group):
-            for name, label in zip(names, labels, strict=True):
+            for name in names:
+                label = next(labels)
                 signal, kind, place = _parts(name)
                 width = waves.width(signal)
                 if RANGE.fullmatch(signal):

@@ -361,19 +361,14 @@ def summary(outcomes: list[Outcome], outputs: Path) -> str:
 
 
 def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: str, console: Console) -> None:
-    """Print the command that traces the first wrong pixel of each scene.
-
-    A trace needs a scene that is not built in, and a design with one pixel per clock; if not, say so.
-    """
+    """Print the command that traces the first wrong pixel of each scene; say so if there is none."""
     for outcome in outcomes:
         configuration = outcome.run.configuration
         if outcome.result is None or not outcome.result["wrong_vs_golden"]:
             continue
-        if configuration.fixed or configuration.pixels > 1:
-            option = "FIX" if configuration.fixed else "PIXELS=2"
+        if configuration.fixed and not configuration.facts.whole_frames:
             console.print(
-                f"{outcome.run.path.stem}: a design with {option} is not traced; try the scene without {option}",
-                soft_wrap=True,
+                f"{outcome.run.path.stem}: a design with FIX is not traced; try the scene without FIX", soft_wrap=True
             )
             continue
         column, row = outcome.result["first_wrong_ray"]
@@ -525,6 +520,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     figures = [{"scene": one.run.path.stem, **one.result} for one in outcomes if one.result is not None]
     keep(arguments, {"scenes": figures}, verilog)
     if not gates:
-        show_traces(outcomes, given_options(arguments), arguments.simulator, console)
+        show_traces(outcomes, told, arguments.simulator, console)
     console.print(summary(outcomes, outputs), soft_wrap=True)
     return int(any(outcome.failure for outcome in outcomes))

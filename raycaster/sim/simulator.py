@@ -152,7 +152,8 @@ class Bench:
     def defines(self, configuration: Configuration) -> dict[str, int]:
         """Return the macros of its Verilog, for a design."""
         bus = {} if configuration.bus == OWN else {"BRIDGED": 1}
-        lists = {"WHOLE_FRAMES": 1} if self.system and configuration.facts.whole_frames else {}
+        follows = self.system or self.window
+        lists = {"WHOLE_FRAMES": 1} if follows and configuration.facts.whole_frames else {}
         return bus | lists | ({"WAVE_WINDOW": 1} if self.window else {})
 
     def included(self, configuration: Configuration) -> dict[str, str]:

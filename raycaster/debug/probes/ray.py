@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, SupportsInt
 
@@ -70,6 +70,8 @@ class Event:
     kind: str
     cycle: int
     place: Place
+    golden: Mapping[str, Value] = field(default_factory=dict)
+    """The golden model's values, by the names of a probe's parts, of probes that do not read them themselves."""
 
 
 Read = Callable[["Ray", Place], Sequence[Value] | None]
@@ -82,10 +84,9 @@ class Probe:
 
     Attributes:
         quantity: name of the quantity.
-        signals: full names, or patterns that the description completes; a difference is blamed on the module with the
-            signal.
+        signals: full names; a difference is blamed on the module with the signal.
         event: kind of event after which the signals hold the value.
-        golden: the golden model's value.
+        golden: the golden model's value; None if the event has it.
         late: cycles from the event until the signals hold the value.
         decode: function of the ray, the place and the samples that returns the values; None if the samples are the
             values.
@@ -102,7 +103,7 @@ class Probe:
     quantity: str
     signals: tuple[str, ...]
     event: str
-    golden: Read
+    golden: Read | None = None
     late: int = 0
     decode: Callable[..., Sequence[Value]] | None = None
     signed: bool | tuple[int, ...] = False
@@ -196,18 +197,14 @@ class Description:
         """List the signals that `events` reads."""
         raise NotImplementedError
 
-    def named(self, signal: str, place: Place) -> str:
-        """Return the full name of a probe's signal at a place."""
-        return signal
-
-    def groups(self, ray: Ray) -> Mapping[str, Sequence[str]]:
+    def groups(self) -> Mapping[str, Sequence[str]]:
         """Group the signals for a viewer, by group name: full names, with `:signed` or `:hex` after those that are not
-        unsigned numbers or single bits. The only rectangle is the one that the pixel shows."""
-        place, values = Place(0, max(0, ray.winner(0))), []
+        unsigned numbers or single bits."""
+        values = []
         for probe in self.probes:
             for number, signal in enumerate(probe.signals):
                 kind = ":hex" if probe.is_colour(number) else ":signed" if probe.is_signed(number) else ""
-                values.append(self.named(signal, place) + kind)
+                values.append(signal + kind)
         listed: dict[str, tuple[str, str]] = {}
         for group, signals in {
             "video": [f"{self.video}.{name}" for name in VIDEO_SIGNALS],
@@ -228,11 +225,9 @@ class Ray:
         """Trace the pixel's rays.
 
         Raises:
-            UserError: there is no such pixel, or the design computes two pixels per clock.
+            UserError: there is no such pixel.
         """
         self.design, self.config, self.scene = design, design.configuration, design.scene
-        if self.config.pixels > 1:
-            raise UserError("pixels: expected 1 for a trace, got 2; leave it out, as both lanes work alike")
         screen = self.config.screen_geometry
         if not (0 <= row < screen.rows and 0 <= column < screen.columns):
             raise UserError(
@@ -242,8 +237,21 @@ class Ray:
         self.row, self.column = row, column
         self.offset, self.unit = divmod(column, self.config.units)
         """Group that the pixel is in, and the ray unit that computes it; see the seed engine's ray_generator."""
+        if self.config.facts.whole_frames:
+            self.unit = row % self.config.units
+        self.lane = column * screen.doubling % screen.pixels_per_clock
+        """Number of the pixel among those of its clock, 0 for the left one."""
         self.reflections = design.reflections
-        self.rectangles = Rectangles.of_scene(self.scene)
+        fixed, every = self.config.fixed, Rectangles.of_scene(self.scene)
+        self.rectangles = Rectangles.of_fixed(fixed.rectangles) if fixed else every
+        """Those of the hardware, which lacks some of a scene that is built in."""
+        self._names = [one.name for one in self.scene.rect]
+        if fixed:
+            bounds = (
+                [(*low, *high) for low, high in zip(one.low, one.high, strict=True)] for one in (every, self.rectangles)
+            )
+            places = enumerate(next(bounds))
+            self._names = [next(self._names[i] for i, one in places if one == own) for own in next(bounds)]
         basis = self.scene.camera.basis
         self.row_slopes = primary_slopes(screen, basis)[row]
         """int64 (columns, 3): slopes of the primary rays of the pixel's row, as long as in the hardware."""
@@ -259,6 +267,10 @@ class Ray:
         bits, colours = self.config.colour_bits, self.golden.colours[0].reshape(1, 1, 3)
         self.pixel = packed(shown(colours, self.config)[0, 0] >> (CHANNEL_BITS - bits), bits)
         """The pixel's colour, with the design's number of bits."""
+
+    def name(self, rectangle: int) -> str:
+        """Return a rectangle's name in the scene file, or an empty text."""
+        return self._names[rectangle] or ""
 
     def alive(self, bounce: int) -> bool:
         """True if there is such a ray: every ray before it hit something."""
@@ -413,10 +425,10 @@ def read(waves: Waves, description: Description, ray: Ray) -> list[Reading]:
         for probe in probes:
             if probe.event != event.kind or not (ray.alive(event.place.bounce) or event.kind in OF_LOST_RAYS):
                 continue
-            golden, cycle = tuple(probe.golden(ray, event.place) or ()), event.cycle + probe.late
+            values = probe.golden(ray, event.place) if probe.golden else map(event.golden.get, probe.parts)
+            golden, cycle = tuple(values or ()), event.cycle + probe.late
             if any(value is not None for value in golden) and 0 <= cycle < len(samples.times_ns):
-                names = tuple(description.named(signal, event.place) for signal in probe.signals)
-                found.append((replace(probe, signals=names), event.place, cycle, golden))
+                found.append((probe, event.place, cycle, golden))
     readings = []
     happened = {(event.kind, event.place) for event in events}
     for kind, place in description.expected(ray):

@@ -115,12 +115,15 @@ def sync_in_the_picture(ray: Ray, place: Place) -> Sequence[int]:
 
 def monitor_probes(renderer: str, port: str, video: str, config: Configuration) -> list[Probe]:
     """Probes of the pixel's last steps."""
-    channels = fields(renderer, port, COLOURS, Pixel(config.colour_bits))
+    channels, bits = fields(renderer, port, COLOURS, Pixel(config.port_bits)), config.colour_bits
+
+    def of_lane(ray: Ray, place: Place, *pixels: int) -> Sequence[int]:
+        return [pixel >> ray.lane * bits & (1 << bits) - 1 for pixel in pixels]
+
     return [
-        Probe("pixel to the monitor", channels, "shown", Ray.channels, parts=COLOURS,
-            narrow=True),
+        Probe("pixel to the monitor", channels, "shown", Ray.channels, parts=COLOURS, narrow=True, decode=of_lane),
         Probe("pins", tuple(f"{video}.{name}" for name in PINS), "shown", Ray.channels, late=1, parts=COLOURS,
-            narrow=True),
+            narrow=True, decode=of_lane),
         Probe("sync at this pixel", tuple(f"{video}.vga_{name}" for name in ("hs", "vs", "blank_n")), "shown",
             sync_in_the_picture, late=1, shown=False, parts=("HS", "VS", "BLANK_N")),
     ]  # fmt: skip
@@ -130,9 +133,9 @@ def shown_events(samples: Samples, ray: Ray, video: str, after: int) -> list[Eve
     """Find when the pixel first goes to the pins after a cycle."""
     screen = ray.config.screen_geometry
     x, y, ends = (samples.values[f"{video}.{name}"] for name in ("x", "y", "pixel_end"))
-    place = ray.column * screen.doubling, ray.row * screen.doubling
+    place = ray.column * screen.doubling // screen.pixels_per_clock, ray.row * screen.doubling
     # The position is signed, and as wide as its range.
-    bits = [max(span.visible - 1, span.blank - 1).bit_length() + 1 for span in (screen.horizontal, screen.vertical)]
+    bits = [max(span.visible - 1, span.blank - 1).bit_length() + 1 for span in (screen.beats, screen.vertical)]
     for cycle in range(after, len(samples.times_ns)):
         if ends[cycle] and (signed(x[cycle], bits[0]), signed(y[cycle], bits[1])) == place:
             return [Event("shown", cycle, Place(ray.reflections))]
