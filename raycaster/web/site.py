@@ -45,7 +45,7 @@ SCRIPTS = (
 """Scripts in loading order; `settings.js` is generated."""
 
 FIRST_SCENE = "mirror_room"
-FRACTIONS = (0, 2, 4, 8)
+FRACTIONS = (0, 4, 8)
 """Fraction bits of the seed engines on the page."""
 
 WALK_SPEED, TURN_SPEED = 120, 90
@@ -79,6 +79,7 @@ _LOOKS = {"materials": True, "patterns": True, "reflections": 2}
 ROOM_MODELS = (
     Model("plain", {**_SPAN, "turn": True}, draws=True),
     Model("looks", {**_SPAN, "turn": True, **_LOOKS}, draws=True),
+    Model("lit", {**_SPAN, "turn": True, **_LOOKS, "light": True}, draws=True),
     Model(
         "full", {**_SPAN, "turn": True, **_LOOKS, "light": True, "reflections": 4, "rectangles": MOST_RECTANGLES},
         draws=True,
