@@ -175,7 +175,7 @@ def test_runs_wait(leaf_of, random):
 
 FAULTS = [
     ("clipper", "(answer_left < 0) != (answer_right < 0)", "(answer_left <= 0) != (answer_right <= 0)"),
-    ("clipper", "border > start", "border < start"),
+    ("clipper", "border > low", "border < low"),
     ("half_lines", "strict = met", "strict = 0"),
     ("sweep", "left <= stop", "left < stop"),
     ("sweep", "follows = (stop == winner_stop) && (stop < tested_stop)", "follows = 0"),
