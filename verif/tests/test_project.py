@@ -33,7 +33,7 @@ MAY_IMPORT = {
     "convert": ("hdl", "raycaster", "runs", "rtl", "design", "fit"),
     "fpga": ("hdl", "raycaster", "runs", "golden", "rtl", "design", "sw", "fit", "convert"),
     "sim": ("hdl", "raycaster", "runs", "golden", "rtl", "design", "fit", "convert", "fpga"),
-    "debug": ("hdl", "raycaster", "golden", "rtl", "design", "convert", "sim"),
+    "debug": ("hdl", "raycaster", "golden", "rtl", "design", "fit", "convert", "sim"),
     "play": ("raycaster", "runs", "golden", "rtl", "design", "sw", "convert", "sim"),
     "web": ("raycaster", "runs", "golden", "rtl", "design", "sw", "sim", "debug", "play"),
     "verif": ("hdl", "raycaster", "runs", "golden", "rtl", "design", "fit", "convert", "fpga", "sim"),

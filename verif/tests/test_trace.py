@@ -303,6 +303,13 @@ FAULTS = {
         ("corner_finder", "corner <= at_left", "corner <= 0"),
         ("cell_walker", "number = present + 1", "number = present + 2"),
     ],
+    "span-materials-patterns-light": [
+        ("pattern_colour", "second = odd_u != odd_v", "second = odd_u"),
+        ("surface_light", "front = light_a < rect_position", "front = light_a > rect_position"),
+        ("shadow_finder", "offset = light_q - eye_q", "offset = light_q + eye_q"),
+        ("shadow_scan", "covers = begun", "covers = 0 && begun"),
+        ("shade_colour", "red = shade * colour_red", "red = 3 * colour_red"),
+    ],
     "span-pairs-shared": [
         ("rect_table", "walk_rect_word <= words[walk_index]", "walk_rect_word <= words[0]"),
         ("list_player", "shown = {right, left}", "shown = {left, right}"),
