@@ -274,6 +274,9 @@ class Statements(_ConvertVisitor):
         self.write(f" begin: {label}" if label else " begin")
         self.indent()
         self._declare(locals_of(tree))
+        if tree.kind in (_kind.ALWAYS_COMB, _kind.SIMPLE_ALWAYS_COMB):
+            for name in self._sometimes_counted(node.body):
+                self._lines(f"{name} = 0;")
         reset = getattr(tree, "reset", None)
         if reset is not None:
             self._lines(f"if ({reset} == {int(reset.active)}) begin")
@@ -324,11 +327,21 @@ class Statements(_ConvertVisitor):
 
     def _refuse_missing(self, process: Any) -> None:
         """Refuse a process that waits for values but not for all that it reads, as synthesis does."""
-        waits = {id(edge) for edge in self.tree.senslist if isinstance(edge, SignalType)}
+        waits = [id(edge) for edge in self.tree.senslist if isinstance(edge, SignalType)]
         missing = [name for name in sorted(self.tree.inputs) if waits and id(self.tree.symdict[name]) not in waits]
         if missing or 0 < len(waits) < len(self.tree.senslist):
             self._expressions.refuse(process, f"it does not wait for {missing[0] if missing else 'edges only'}, as "
                                      "synthesis does; write @always_comb, or wait for all that it reads")  # fmt: skip
+
+    def _sometimes_counted(self, body: Sequence[Any]) -> Iterator[str]:
+        """Yield the variables of loops that only run in some cases, which would be latches for Yosys."""
+        for node in body:
+            if isinstance(node, ast.For):
+                yield from self._sometimes_counted(node.body)
+                continue
+            loops: list[Any] = [each for each in ast.walk(node) if isinstance(each, ast.For)]
+            for loop in loops:
+                yield from dict.fromkeys((loop.target.id, *(flag for _, flag in self._flags(loop))))
 
     def _refuse_latches(self, process: Any) -> None:
         """Refuse a signal that keeps its value in some cases, or in some bits."""
