@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # The entry point from a clone. Each target sets up the environment it needs and calls the program `raycaster` with
-# make's variables unchanged: `make sim ENGINE=beam SCENE=boxes` runs `raycaster sim ENGINE=beam SCENE=boxes`.
+# make's variables unchanged: `make sim ENGINE=span SCENE=boxes` runs `raycaster sim ENGINE=span SCENE=boxes`.
 
 ifeq ($(wildcard raycaster/cli/commands.py),)
 $(error error: make must run in the folder of $(MAKEFILE_LIST); use make -C with that folder)

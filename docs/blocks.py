@@ -58,7 +58,7 @@ DRAWINGS = (
     Drawing("ray_unit", _module, "ray_unit", frozenset({"intersection_finder"})),
     Drawing("video_generator", _module, "video_generator"),
     Drawing("exact", _module, "ray_caster", frozenset({"exact_unit"}), "exact"),
-    Drawing("beam", _module, "beam_renderer", frozenset({"beam_caster", "beam_lane"}), "beam"),
+    Drawing("span", _module, "span_renderer", frozenset({"span_unit"}), "span"),
 )
 
 

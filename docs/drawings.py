@@ -10,7 +10,7 @@ from typing import Any
 
 import wavedrom
 
-from raycaster.docs import blocks, timing
+from raycaster.docs import blocks, spans, timing
 from raycaster.report import plots
 from raycaster.report.designs import of_kept, work_precision
 from raycaster.runs.outcomes import RESULTS, kept_outcome
@@ -27,6 +27,10 @@ def drawn() -> dict[str, str]:
             drawing: Any = wavedrom.render(timing.kept(diagram.name))
             drawing.saveas(str(path))
             found[diagram.name] = path.read_text()
+        for name, figure in spans.pictures().items():
+            path = Path(scratch) / f"{name}.svg"
+            plots.save(figure, path)
+            found[name] = path.read_text()
         path = Path(scratch) / "error_and_time.svg"
         designs = of_kept(kept_outcome(RESULTS / "report.json").figures["designs"])
         # The marks in words, which `words` compares: otherwise a mark could move unseen.

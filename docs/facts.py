@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 
 from pydantic.fields import FieldInfo
 from systemrdl.node import FieldNode, Node, RegNode
@@ -13,14 +12,14 @@ from systemrdl.node import FieldNode, Node, RegNode
 from raycaster.buses import BUSES
 from raycaster.configuration import FEATURES
 from raycaster.design.decide import OPTIONS, configure
+from raycaster.docs import spans
 from raycaster.docs.timing import CONFIGURATION
 from raycaster.registers import compile_registers
-from raycaster.rtl.beam import latencies as beam
 from raycaster.rtl.buffered.engine import GROUP_OVERHEAD
 from raycaster.rtl.common.interfaces import AIM_CYCLES
 from raycaster.rtl.common.widths import exact_slope_bits
+from raycaster.rtl.cull.rect_setup import SETUP_LATENCY
 from raycaster.rtl.engine.engine import Engine
-from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
 from raycaster.rtl.engines import ENGINES, EXACT, SEED
 from raycaster.rtl.exact.exact_control import PATTERN_LATENCY, WRITE_AT
 from raycaster.runs.outcomes import table
@@ -49,7 +48,7 @@ def offers() -> str:
 
     rows = [[what, f"`{feature.upper()}=1`", *("yes" if feature in one.features else "" for one in facts)]
             for feature, what in FEATURES.items()]  # fmt: skip
-    rows.append(["2 pixels per clock", "`PIXELS=2`", *("" if one.line_buffered else "yes" for one in facts)])
+    rows.append(["2 pixels per clock", "`PIXELS=2`", *("yes" if one.whole_frames else "" for one in facts)])
     rows.append(["fraction bits, rounding", "`FRACTION_BITS=`", *("yes" if one.divides else "" for one in facts)])
     screens = {place: screen for one in facts for place, screen in one.screens.items()}
     for (name, count), screen in sorted(screens.items(), key=lambda one: (one[0][0] != "vga", one[0])):
@@ -90,22 +89,6 @@ def exact_cycles() -> str:
     return table(
         ["reflections", "rectangles", "fewest units", "cycles per group, worst case", "budget per group"], rows
     )
-
-
-def beam_screens() -> str:
-    """Table of the beam engine's screens, with their clocks and latencies."""
-    rows = []
-    for rows_of_rays, scale, pixels in ((240, 1, 1), (240, 2, 1), (200, 2, 1), (180, 4, 1), (180, 6, 1), (180, 6, 2)):
-        config = configure(engine="beam", rows=rows_of_rays, scale=scale, pixels=pixels)
-        screen = config.screen_geometry
-        rate = round(screen.clock_hz / screen.frame_cycles)
-        size = f"{screen.columns}x{screen.rows}, {rate} per second"
-        size += f", {pixels} pixels per clock" if pixels > 1 else ""
-        turned = replace(config, turn=True)
-        setup = [f"{beam.start_cycles(one)}" for one in (config, turned)]
-        rows.append([size, f"{screen.clock_hz / 1e6:g} MHz", beam.beam_latency(config), *setup, screen.beats.blank])
-    head = ["rays, frame rate", "clock", "cycles, column to colour", "cycles, row set-up", "with a turning camera"]
-    return table([*head, "blanking cycles before a row"], rows)
 
 
 def register_overview() -> str:
@@ -175,7 +158,8 @@ def facts() -> dict[str, str]:
         "buses": buses(),
         "seed_cycles": seed_cycles(),
         "exact_cycles": exact_cycles(),
-        "beam_screens": beam_screens(),
+        "span_entries": spans.entries(),
+        "span_runs": spans.runs(),
         "register_overview": register_overview(),
         "registers": registers(),
         "units": str(default.units),
@@ -189,8 +173,6 @@ def facts() -> dict[str, str]:
         "pattern_latency": str(PATTERN_LATENCY),
         "aim_cycles": str(AIM_CYCLES),
         "light_units": str(configure(engine="exact", light=True).units),
-        "beam_latency": str(beam.beam_latency(configure(engine="beam"))),
-        "beam_pass": str(beam.pass_latency(configure(engine="beam"))),
         "group": str(SEED.group_cycles(default)),
         "budget": str(default.group_budget),
         "row": f"{default.screen_geometry.row_cycles:,}",

@@ -28,7 +28,7 @@ def from_make() -> bool:
 
 
 def as_typed(option: str, value: object = None) -> str:
-    """Return an option as the user types it: `ENGINE=beam` for make, `--engine beam` for the program.
+    """Return an option as the user types it: `ENGINE=span` for make, `--engine span` for the program.
 
     Args:
         option: name of the option, as in `fraction_bits`.

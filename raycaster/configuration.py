@@ -28,9 +28,6 @@ MOST_REFLECTIONS = 4
 CHANNEL_BITS = 8
 """Bits per colour channel inside the hardware, before the video output."""
 
-SLOW_HZ = 50_000_000
-"""Clock frequency that designs meet on the boards' chips without registers on long wires."""
-
 
 def _whole(value: object) -> object:
     """Return a value unless it has a decimal point, as pydantic takes 12.0 for 12; scene files refuse it, too."""
@@ -77,12 +74,11 @@ class Facts:
         usual_build: usual time to convert its default design and to build it with Verilator on two cores, estimated
             from processor time.
         screens: screens that it can fill, by name and rows.
-        rect_latency: cycles from `fetch` to the rectangle.
         margin: distance by which a primary ray that hits a rectangle may pass outside its bounds, in world units.
         lacks: options of `FEATURES` that it refuses, each with the reason.
         divides: True if it forms quotients, which have fraction bits and are rounded.
-        line_buffered: True if units fill a line buffer ahead of the monitor, group by group.
-        whole_frames: True if units draw whole frames into lists of runs, of which one is shown.
+        whole_frames: True if units draw whole frames into lists of runs, of which one is shown; the others fill a line
+            buffer ahead of the monitor, group by group.
     """
 
     name: str
@@ -91,11 +87,9 @@ class Facts:
     marker: str
     usual_build: str
     screens: Mapping[tuple[str, int], Screen]
-    rect_latency: int = 1
     margin: int = 0
     lacks: Mapping[str, str] = field(default_factory=dict)
     divides: bool = False
-    line_buffered: bool = True
     whole_frames: bool = False
 
     @property
@@ -116,7 +110,7 @@ class Options:
         None,
         ge=1,
         description="parallel ray units, a divisor of the columns except with span; by default 32 (seed), the fewest "
-        "that meet the row budget (exact), one per pixel of a clock (beam) or one (span)",
+        "that meet the row budget (exact) or one (span)",
     )
     rectangles: Whole = Field(12, ge=1, le=MOST_RECTANGLES, description="capacity of the scene memory, in rectangles")
     reflections: Whole = Field(
@@ -128,16 +122,14 @@ class Options:
     rows: Whole | None = Field(
         None,
         description="rows of rays: 240 (640x480@60), 200 (640x400@70); seed and exact: 120, 96 or 60 (640x480@60 at "
-        "half the clock); beam and span: 180 (1280x720@60, or 1920x1080 at scale 3 or 6)",
+        "half the clock); span: 180 (1280x720@60, or 1920x1080 at scale 3 or 6)",
     )
     scale: Whole | None = Field(
         None,
-        description="resolution scale: 1; beam and span: 1, 2 or 4, by default one ray per monitor pixel; "
+        description="resolution scale: 1; span: 1, 2 or 4, by default one ray per monitor pixel; "
         "with 180 rows also 3 or 6 (1920x1080)",
     )
-    pixels: Whole = Field(
-        1, ge=1, le=2, description="pixels per clock: 1, or 2 (beam and span, if each has its own column)"
-    )
+    pixels: Whole = Field(1, ge=1, le=2, description="pixels per clock: 1, or 2 (span, if each has its own column)")
     fraction_bits: Whole = Field(0, ge=0, le=8, description="fraction bits of origins, planes and quotients")
     rounding: Rounding = Field("truncate", description="rounding of quotients: truncate or nearest")
     divider_bits: Whole | Literal["auto"] = Field("auto", description="quotient bits per cycle: auto, 1, 2 or 3")
@@ -153,7 +145,7 @@ class Options:
     screen: Literal["vga", "tiny", "play"] = Field(
         "vga",
         description="screen: vga (on boards without a PLL, 640x480 has 25 MHz, 0.7 per cent below the standard), tiny "
-        "(64x48, for slow simulators) or play (320x240 with short frames, beam and span only)",
+        "(64x48, for slow simulators) or play (320x240 with short frames, span only)",
     )
     allow_underrun: bool = Field(False, description="accept a design that cannot meet the row budget")
     culling: bool | None = Field(
@@ -184,7 +176,7 @@ class Configuration(Options):
     The attributes that `Options` has, too, are described there.
 
     Attributes:
-        units: number of parallel ray units; with the beam engine, one per pixel of a clock.
+        units: number of parallel ray units.
         list: runs that each of the two lists of frames holds; 0 if the engine has no lists.
         divider_bits: quotient bits per cycle; 0 if the engine does not divide, nor are there fraction bits then.
         culling: True if units abandon early the rectangles that no ray of a group can hit. This saves cycles in most
@@ -252,11 +244,6 @@ class Configuration(Options):
         return self.whole_screen if self.pixels == 1 else self.whole_screen.paired()
 
     @property
-    def has_long_wires(self) -> bool:
-        """True if long wires leave no time for logic: two lanes, spread over the chip, and a clock above `SLOW_HZ`."""
-        return self.pixels > 1 and self.screen_geometry.clock_hz > SLOW_HZ
-
-    @property
     def groups(self) -> int:
         """Number of groups of `units` columns per row; `Max` in the seed."""
         return self.screen_geometry.columns // self.units
@@ -281,8 +268,8 @@ class Configuration(Options):
         """Short file name, different for designs whose hardware differs."""
         rounding = "n" if self.rounding == "nearest" else "t"
         quotients = f"-f{self.fraction_bits}{rounding}-d{self.divider_bits}" if self.facts.divides else ""
-        scale = f"-s{self.scale}" if not self.facts.line_buffered else ""
-        pairs = "-pairs" if self.pixels > 1 and self.facts.whole_frames else ""  # other engines have a unit for each
+        scale = f"-s{self.scale}" if self.facts.whole_frames else ""
+        pairs = "-pairs" if self.pixels > 1 else ""
         entries = f"{pairs}-l{self.list}" if self.list else ""
         fixed = f"-{self.fixed.name}" if self.fixed else ""
         # Defaults are left out of the name.

@@ -150,15 +150,13 @@ _HD_180 = Screen(
 _TINY_LINES = Span(96, 2, 2, 4, active_high=False)
 # The line is just long enough for 32 units to have the same 320 cycles per group as on the full screen.
 _TINY_48 = Screen(64, 48, 38, 2, Span(128, 8, 16, 8, active_high=False), _TINY_LINES)
-# Here the blanking is just long enough for the beam engine to set up 32 rectangles.
-_TINY_BEAM_48 = replace(
+_TINY_LIST_48 = replace(
     _TINY_48,
     horizontal=Span(128, 16, 32, 64, active_high=False),
     for_pairs=replace(_TINY_48, horizontal=Span(128, 32, 64, 192, active_high=False), clocks_per_pixel=1),
 )
 
-# One pixel per ray, for simulated programs, at 60 frames per second. The blanking is the shortest in which the beam
-# engine can set up two reflections and 32 rectangles, or 12 with a camera that turns.
+# One pixel per ray, for simulated programs, at 60 frames per second.
 _PLAY_240 = Screen(
     320, 240, 190, 1, Span(320, 2, 40, 58, active_high=False), Span(240, 1, 1, 1, active_high=False), pixel_hz=6_120_000
 )
@@ -180,14 +178,14 @@ SCREENS: Mapping[tuple[str, int], Screen] = {
 }
 """Screens for the engines with a line buffer, at scale 1, by name and rows."""
 
-BEAM_SCREENS: Mapping[tuple[str, int], Screen] = {
+LIST_SCREENS: Mapping[tuple[str, int], Screen] = {
     place: replace(screen, clocks_per_pixel=1)
     for place, screen in {
         ("vga", 240): _VGA_240,
         ("vga", 200): _VGA_200,
         ("vga", 180): _HD_180,
-        ("tiny", 48): _TINY_BEAM_48,
+        ("tiny", 48): _TINY_LIST_48,
         ("play", 240): _PLAY_240,
     }.items()
 }
-"""Screens for the beam engine, which takes one clock per pixel, at scale 1, by name and rows."""
+"""Screens for engines that draw whole frames, which take one clock per pixel, at scale 1, by name and rows."""

@@ -4,14 +4,16 @@
 from collections.abc import Mapping
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.beam.engine import BEAM
 from raycaster.rtl.engine.engine import Engine
 from raycaster.rtl.exact.engine import EXACT
 from raycaster.rtl.seed.engine import SEED
 from raycaster.rtl.span.engine import SPAN
 
-ENGINES: Mapping[str, Engine] = {one.facts.name: one for one in (SEED, EXACT, BEAM, SPAN)}
+ENGINES: Mapping[str, Engine] = {one.facts.name: one for one in (SEED, EXACT, SPAN)}
 """Engines by name; the first one is the default."""
+
+SUCCESSORS: Mapping[object, str] = {"beam": "span"}
+"""Engines that replace engines of earlier versions, by their names."""
 
 
 def engine_of(config: Configuration) -> Engine:

@@ -45,7 +45,7 @@ DESIGNS = {
     for config in (
         configure(units=16, reflections=2, divider_bits=2, allow_underrun=True),
         configure(engine="exact", units=8, reflections=2, culling=True, light=True, allow_underrun=True),
-        configure(engine="beam", scale=1, reflections=2),
+        configure(engine="span", scale=1, reflections=2),
     )
 }
 
@@ -57,8 +57,6 @@ REASONS: Mapping[str, str] = {
     "avalon_interface: elsif: else if (bus_address == engine_address) begin": READ,
     "avalon_interface: elsif: else if (bus_address == size_address) begin": READ,
     "avalon_interface: elsif: else if (bus_address == version_address) begin": READ,
-    "avalon_interface: if: if (progress_underrun) begin": "the beam engine never underruns",
-    "beam_renderer: else: else if (row != 240) begin": "no row is announced after the last one",
     "camera_mem: if: if (select_light) begin": "this design has no light",
     "ray_caster_renderer: else: else if (progress_group_cycles != 65535) begin": "a row is abandoned after 3200 cycles",
     "ray_caster_renderer: else: if (progress_row_cycles != 65535) begin": "a row is abandoned after 3200 cycles",
@@ -147,7 +145,7 @@ def read_counts(path: Path) -> Counter[str]:
 
 def command_parser() -> CommandParser:
     """Build the parser of the command line."""
-    parser = CommandParser("verify coverage", __doc__, "--engine beam")
+    parser = CommandParser("verify coverage", __doc__, "--engine span")
     parser.add_argument(
         "--engine", choices=list(DESIGNS), action="append", metavar="NAME", help=f"{', '.join(DESIGNS)} (default: all)"
     )

@@ -71,7 +71,7 @@ def overview(*, from_make: bool = False) -> str:
     others = [name for name in chosen if not name.startswith("verify ")]
     lines = [(name, COMMANDS[name].purpose) for name in others]
     if from_make:
-        head = "make sim SCENE=mirror_room ENGINE=beam PYTHON3=python3.12"
+        head = "make sim SCENE=mirror_room ENGINE=span PYTHON3=python3.12"
         lines += [
             (", ".join("verify-all" if check == "all" else check for check in checks), ""),
             ("test, lint, clean", "run most tests; check the sources; remove generated files"),

@@ -105,7 +105,7 @@ def _description(config: Configuration) -> str:
     values = {name: int(value) if isinstance(value, bool) else value for name, value in values.items()}
     if config.fixed:
         values["fixed"] = config.fixed.name
-    if config.facts.line_buffered:
+    if not config.facts.whole_frames:
         del values["scale"], values["pixels"]
     if not config.facts.whole_frames:
         del values["list"]

@@ -5,9 +5,8 @@ from collections.abc import Mapping
 from typing import Any, get_args
 
 from raycaster.design.decide import OPTIONS
-from raycaster.rtl.beam import latencies
 from raycaster.rtl.common import widths
-from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
+from raycaster.rtl.cull.rect_setup import SETUP_LATENCY
 
 
 def _option(name: str) -> str:
@@ -17,8 +16,8 @@ def _option(name: str) -> str:
 
 
 VOCABULARY: Mapping[str, Any] = {
-    # Latencies and widths, which a docstring may name even if the block's code does not use them.
-    **{name: value for module in (latencies, widths) for name, value in vars(module).items()},
+    # Widths, which a docstring may name even if the block's code does not use them.
+    **vars(widths),
     "SETUP_LATENCY": SETUP_LATENCY,
     # Choices that a text depends on.
     **{f"config.{name}": _option(name) for name in OPTIONS},

@@ -61,7 +61,7 @@ def window_of(configuration: Configuration, first_row: int, last_row: int) -> di
     shown. Rows of whole frames are drawn at times of their own, before the frame is shown.
     """
     screen, facts = configuration.screen_geometry, configuration.facts
-    first = first_row if facts.line_buffered else first_row + 1
+    first = first_row + 1 if facts.whole_frames else first_row
     window = {"window_from": first * screen.row_cycles, "window_to": (last_row + 2) * screen.row_cycles + MARGIN}
     if facts.whole_frames:
         # Units that are ahead keep their runs until the rows above are complete.

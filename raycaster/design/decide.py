@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, ValidationError
+from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic.dataclasses import dataclass as validated_dataclass
 from pydantic.fields import FieldInfo
 
@@ -14,12 +14,22 @@ from raycaster.complaints import as_typed, refusal
 from raycaster.configuration import FEATURES, Configuration, ConfigurationError, Options
 from raycaster.errors import listed
 from raycaster.rtl.engine.engine import Engine
-from raycaster.rtl.engines import ENGINES
+from raycaster.rtl.engines import ENGINES, SUCCESSORS
+
+
+def _present(name: object) -> object:
+    """Return an engine's name unless that engine is gone."""
+    if name in SUCCESSORS:
+        raise ValueError(
+            f"{name} is gone; choose {as_typed('engine', SUCCESSORS[name])}, which draws the same pictures"
+        )
+    return name
+
 
 if TYPE_CHECKING:
     EngineName = str
 else:
-    EngineName = Literal[*ENGINES]
+    EngineName = Annotated[Literal[*ENGINES], BeforeValidator(_present)]
 
 
 @validated_dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid"))
@@ -52,7 +62,7 @@ def decided(options: Options) -> Configuration:
     for feature, reason in engine.facts.lacks.items():
         if getattr(options, feature):
             raise ValueError(f"{feature}: {reason}; {_instead(options)}")
-    if options.pixels > 1 and engine.facts.line_buffered:
+    if options.pixels > 1 and not engine.facts.whole_frames:
         raise ValueError(
             f"pixels: the {options.engine} engine has 1 per clock, not {options.pixels}; {_instead(options)}"
         )
@@ -83,7 +93,7 @@ def decided(options: Options) -> Configuration:
 def _lacking(engine: Engine, options: Options) -> Iterator[str]:
     """Yield the wanted features and the screen, in words, that an engine does not have."""
     yield from (FEATURES[name] for name in engine.facts.lacks if getattr(options, name))
-    if options.pixels > 1 and engine.facts.line_buffered:
+    if options.pixels > 1 and not engine.facts.whole_frames:
         yield f"{options.pixels} pixels per clock"
     screens = [screen for place, screen in engine.facts.screens.items() if _matches(place, options)]
     if not screens:

@@ -53,7 +53,7 @@ ADVICE = {
 
 
 class CommandParser(argparse.ArgumentParser):
-    """Parser for a subcommand's options, also given as make variables: `ENGINE=beam` for `--engine beam`."""
+    """Parser for a subcommand's options, also given as make variables: `ENGINE=span` for `--engine span`."""
 
     def __init__(self, name: str, doc: str | None, example: str):
         """Set up what the help of all commands has in common.

@@ -300,7 +300,7 @@ class SceneBus(Interface):
 
 
 class Rects(Group):
-    """Read port for a live rectangle: sorted, the engine's rect_latency cycles after fetch, held until the next fetch.
+    """Read port for a live rectangle: sorted, in the cycle after fetch, and held until the next fetch.
 
     Attributes:
         usable: one bit per rectangle, 1 if it is enabled and lies in a plane; other rectangles are don't care.

@@ -104,26 +104,6 @@ def wide_walk_bits(config: Configuration) -> int:
     return (WORLD_SIZE * max(steepest_slope(config), config.units)).bit_length() + 1
 
 
-def shift_bits(config: Configuration) -> int:
-    """Width of a component of T (see `ray_fold`), with sign: mirrors on an axis add and subtract twice their distances.
-
-    In pairs they cancel the camera's position, so each pair, or a single mirror, contributes at most 2 * 511.
-    """
-    pairs = max(1, (config.reflections + 1) // 2)
-    return (2 * (WORLD_SIZE - 1) * pairs).bit_length() + 1
-
-
-def fold_bits(config: Configuration) -> int:
-    """Width of a product at the folded ray, with sign.
-
-    It is the sum of (n - T[a]) D[u] and T[u] D[a]. One mirror makes one component of T nonzero, more make both. T has
-    `shift_bits`, so |T| <= t = 1 << (shift_bits - 1), and the sum is at most (511 + m t) * the steepest slope, with
-    m = 1 for one mirror and m = 2 for more.
-    """
-    offsets = min(config.reflections, 2) << (shift_bits(config) - 1)
-    return ((WORLD_SIZE - 1 + offsets) * steepest_slope(config)).bit_length() + 1
-
-
 def share_bits(config: Configuration) -> int:
     """Width of a ray's weight in its pixel: each mirror splits it into quarters or, without materials, into halves."""
     return (2 if config.materials else 1) * config.reflections + 1

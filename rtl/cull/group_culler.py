@@ -10,7 +10,7 @@ from raycaster.rtl.common.records import Facet, Walk, WideRect
 from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, wide_walk_bits
 from raycaster.rtl.cull.group_tester import group_tester
 from raycaster.rtl.cull.rect_copy import rect_copy
-from raycaster.rtl.engine.rect_setup import rect_setup
+from raycaster.rtl.cull.rect_setup import rect_setup
 
 
 @block
@@ -55,12 +55,12 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
 
     copy = Rects(config, usable=rects.usable, rect=WideRect())
     load, found = unsigned(rectangles), unsigned(rectangles)
-    facet, growth, start = Facet(config, look=False), Walk(config, WIDE_BITS), Walk(config, wide_walk_bits(config))
+    facet, growth, start = Facet(config), Walk(WIDE_BITS), Walk(wide_walk_bits(config))
 
     copies = rect_copy(clk, rects=rects, copy=copy, margin=config.facts.margin, config=config)
     sweep = rect_setup(
         clk, reset_ray_caster, start_line=start_sweep, rects=copy, camera=camera, slope=slope, load=load,
-        facet=facet, growth=growth, start=start, config=config, in_adders=True,
+        facet=facet, growth=growth, start=start, config=config,
     )  # fmt: skip
     tester = group_tester(
         clk, load=load, facet=facet, growth=growth, start=start, column_slope=column_slope, row_slope=row_slope,

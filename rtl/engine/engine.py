@@ -22,14 +22,14 @@ class Engine(ABC):
     @property
     @abstractmethod
     def renderer(self) -> Callable[..., Any]:
-        """The block that fills the screen, with the ports of `beam_renderer`."""
+        """The block that fills the screen, with the ports of `ray_caster_renderer`."""
 
     def scales(self, screen: Screen) -> tuple[int, ...]:
         """Return the resolution scales that it offers on a screen, the default first.
 
         Without a line buffer they are those for which the monitor has pixels; first the one with a ray per pixel.
         """
-        if self.facts.line_buffered:
+        if not self.facts.whole_frames:
             return (1,)
         return tuple(sorted(screen.scales, key=lambda scale: scale != screen.doubling))
 
@@ -67,15 +67,15 @@ class Engine(ABC):
         """
 
     def rect_cycles(self, config: Configuration) -> int:
-        """Return the cycles from one rectangle to the next; 0 if all are tested at once."""
+        """Return the cycles from one rectangle to the next; 0 without groups of columns."""
         return 0
 
     def pass_latency(self, config: Configuration) -> int:
-        """Return the cycles from a pass's last rectangle to the next pass; 0 if passes start in every clock."""
+        """Return the cycles from a pass's last rectangle to the next pass; 0 without groups of columns."""
         return 0
 
     def group_cycles(self, config: Configuration) -> int:
-        """Return the cycles per group in the worst case, with all rectangles enabled; 1 for the pixels of one clock."""
+        """Return the cycles per group in the worst case, with all rectangles enabled; 1 without groups."""
         return 1
 
     @abstractmethod

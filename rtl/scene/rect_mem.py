@@ -208,23 +208,9 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     def find_live():
         read_copies.word.next = copies_words[rects.index]
 
-    if config.facts.rect_latency == 1:
-
-        @always(clk.posedge)
-        def present():
-            if rects.fetch:
-                rects.rect.word.next = banks[read_address]
-
-    else:
-        fetched = Rect(config)
-
-        @always(clk.posedge)
-        def fetch():
-            if rects.fetch:
-                fetched.word.next = banks[read_address]
-
-        @always(clk.posedge)
-        def present():
-            rects.rect.word.next = fetched.word
+    @always(clk.posedge)
+    def present():
+        if rects.fetch:
+            rects.rect.word.next = banks[read_address]
 
     return instances()

@@ -6,12 +6,11 @@ from myhdl import always, always_comb, block, instances
 from raycaster.configuration import Configuration
 from raycaster.fixed import varying_bits
 from raycaster.hdl.signals import tied, unsigned
-from raycaster.rtl.common.widths import index_bits
 
 
 @block
 def rect_rom(clk, rects, config: Configuration):
-    """Present the rectangles of a fixed scene, each `config.facts.rect_latency` cycles after its fetch.
+    """Present the rectangles of a fixed scene, each in the cycle after its fetch.
 
     Bits in which all rectangles agree are constants in Verilog, so that synthesis keeps no register for them.
 
@@ -26,24 +25,10 @@ def rect_rom(clk, rects, config: Configuration):
     varying, same = tied(varying_bits(table), width), tied(table[0] & ~varying_bits(table), width)
     looked_up = unsigned(width)
 
-    if config.facts.rect_latency == 1:
-
-        @always(clk.posedge)
-        def look_up():
-            if rects.fetch:
-                looked_up.next = table[int(rects.index)]
-
-    else:
-        held_index = unsigned(index_bits(config))
-
-        @always(clk.posedge)
-        def hold():
-            if rects.fetch:
-                held_index.next = rects.index
-
-        @always(clk.posedge)
-        def look_up():
-            looked_up.next = table[int(held_index)]
+    @always(clk.posedge)
+    def look_up():
+        if rects.fetch:
+            looked_up.next = table[int(rects.index)]
 
     @always_comb
     def present():

@@ -10,7 +10,7 @@ from typing import Any
 from raycaster.configuration import Configuration, Facts, Options
 from raycaster.rtl.engine.engine import Engine, check_pairs
 from raycaster.rtl.span.span_renderer import span_renderer
-from raycaster.screens import BEAM_SCREENS
+from raycaster.screens import LIST_SCREENS
 
 RUNS_PER_ROW = 120
 """Mean runs of a row that a list holds by default; packaged scenes take at most 112 at 320 columns, 119 at 1920."""
@@ -56,7 +56,7 @@ class Span(Engine):
 
 SPAN = Span(
     Facts(
-        name="span", code=3, colour="#CC79A7", marker="D", usual_build="5 s", screens=BEAM_SCREENS,
-        line_buffered=False, whole_frames=True,
+        name="span", code=3, colour="#CC79A7", marker="D", usual_build="5 s", screens=LIST_SCREENS,
+        whole_frames=True,
     )
 )  # fmt: skip

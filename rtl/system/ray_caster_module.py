@@ -5,7 +5,7 @@ from myhdl import always_comb, block, instances
 
 from raycaster.buses import BUSES
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import bit, derived_clock, tied, unconnected, unsigned
+from raycaster.hdl.signals import bit, derived_clock, tied, unsigned
 from raycaster.registers import address_bits
 from raycaster.rtl.bus.avalon_interface import avalon_interface
 from raycaster.rtl.bus.buses import BRIDGES
@@ -42,8 +42,6 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
     reflections, background, usable = None, None, None
     if camera_fixed:
         reflections, background = tied(config.reflections, REFLECTION_BITS), tied(fixed.background, RGB_BITS)
-    elif not (config.facts.line_buffered or config.facts.whole_frames) and config.reflections == 0:
-        reflections = unconnected(REFLECTION_BITS)  # without reflections, it does not read their number
     if fixed:
         usable = tied((1 << config.rectangles) - 1, unsigned(config.rectangles))
     bus = SceneBus(address_bits(*config.map), is_read=config.facts.whole_frames or not camera_fixed)
@@ -52,7 +50,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
     rects, progress = Rects(config, usable=usable), Progress(config)
     camera_readback, rect_readback = unsigned(WORD_BITS), unsigned(WORD_BITS)
     bad_rectangle = bit()
-    resting = config.facts.line_buffered and not fixed
+    resting = not config.facts.whole_frames and not fixed
     scene_clk = derived_clock(clk) if resting else clk
 
     if fixed:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 from raycaster.buses import BUSES
@@ -16,9 +15,6 @@ from raycaster.fixed import FixedScene
 from raycaster.hdl.signals import bit, reset_signal, unsigned
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
-from raycaster.rtl.beam.fold_tester import fold_tester
-from raycaster.rtl.beam.ray_fold import ray_fold
-from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.bus.avalon_host import avalon_host
 from raycaster.rtl.bus.buses import BRIDGES
 from raycaster.rtl.common.interfaces import (
@@ -34,16 +30,10 @@ from raycaster.rtl.common.interfaces import (
     Vga,
 )
 from raycaster.rtl.common.records import (
-    Candidate,
-    Facet,
-    Fold,
     Mirror,
     Pixel,
     Rect,
-    Reflector,
-    RoomImage,
     Signs,
-    Walk,
 )
 from raycaster.rtl.common.widths import LANES, WORD_BITS
 from raycaster.rtl.exact.rect_tester import rect_tester
@@ -108,43 +98,6 @@ class TesterAlone(Alone):
             slope=Slope(self.coordinate), mirror=Mirror(design, distance), hit=bit(), at_mirror=bit(),
             numerator=unsigned(distance), denominator=unsigned(self.coordinate),
         )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class FoldAlone(Alone):
-    """`ray_fold` and both testers with narrow coordinates and slopes; `staged` as in `latencies.is_staged`."""
-
-    coordinate: int
-    slope: int
-    mirrors: int
-    staged: bool
-
-    def _products(self, most: int) -> int:
-        return (most * ((1 << self.slope) - 1)).bit_length() + 1
-
-    def facts(self) -> dict[str, int]:
-        """Return the widths of products and hits."""
-        most = (1 << self.coordinate) - 1
-        return {
-            "WALK_BITS": self._products(most),
-            "FOLD_BITS": self._products(most + (self.mirrors << self.coordinate + 1)),
-            "NUMERATOR_BITS": (most * (self.mirrors + 1)).bit_length(),
-        }
-
-    def blocks(self) -> Iterator[Any]:
-        """Elaborate the fold and both testers."""
-        distance, shift, widths = self.coordinate + 1, self.coordinate + 2, self.facts()
-        product, design = widths["WALK_BITS"], configure(engine="beam", rectangles=1)
-        fold = Fold(design, widths["FOLD_BITS"], product, shift, distance)
-        yield ray_fold(
-            bit(), before=RoomImage(design, shift), last=Reflector(distance), slope=Vector(self.slope + 1), fold=fold
-        )  # fmt: skip
-        for tester in (ray_tester, partial(fold_tester, fold=fold)):
-            yield tester(
-                bit(), step_way=bit(), step_bounds=bit(), step_slope=bit(), facet=Facet(design, product, distance),
-                walk=Walk(design, product), signs=Signs(), slope=Slope(self.slope), index=bit(),
-                hit=Candidate(design, widths["NUMERATOR_BITS"], self.slope), staged=self.staged,
-            )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -256,7 +209,6 @@ class TableAlone(Alone):
             for name in ("corner_0", "corner_1", "surface")
         } | {
             "RECT_BITS": len(Rect(fixed).word),
-            "LATENCY": fixed.facts.rect_latency,
             "CORNER_BITS": CORNER.implemented,
             "SURFACE_BITS": surface_mask(general),
         }

@@ -30,26 +30,15 @@ from raycaster.configuration import Configuration
 from raycaster.design.decide import configure
 from raycaster.hdl.signals import bits_for
 from raycaster.registers import address_bits, register_map
-from raycaster.rtl.beam.latencies import (
-    AIM_LATENCY,
-    TESTER_LATENCY,
-    beam_latency,
-    blend_latency,
-    contest_latency,
-    fold_lead,
-    is_staged,
-    mixes,
-)
 from raycaster.rtl.common import widths
 from raycaster.rtl.common.interfaces import AIM_CYCLES
-from raycaster.rtl.common.records import Camera, Candidate, Mirror, Rect, Surface, look_fields
-from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
+from raycaster.rtl.common.records import Camera, Mirror, Rect, Surface, look_fields
+from raycaster.rtl.cull.rect_setup import SETUP_LATENCY
 from raycaster.rtl.engines import ENGINES, SEED, engine_of
 from raycaster.screens import Screen
 from raycaster.verif.formal.alone import (
     Alone,
     BridgeAlone,
-    FoldAlone,
     ListAlone,
     QueueAlone,
     TableAlone,
@@ -62,10 +51,9 @@ from raycaster.verif.formal.wrapper import constants, source
 ORDER = (
     "video-timing", "avalon-agent", "host-transfers", "axi4lite-transfers", "wishbone-transfers", "apb-transfers",
     "ray-order", "shadow-order", "line-sections", "render-counters", "finder-quotients", "nearest-depth",
-    "contest-products", "shares-exact", "group-safe", "tester-exact", "tester-products", "nearest-products",
-    "eye-exact", "cell-products", "shadow-products", "shadow-wiring", "unit-wiring", "slope-exact", "blend-exact",
-    "row-setup", "line-start", "walked-products", "turned-walks", "fold-exact", "fold-products",
-    "beam-tester-products", "fixed-rects", "divider-exact", "run-order", "whole-frames", "played-lines",
+    "shares-exact", "group-safe", "tester-exact", "tester-products", "nearest-products",
+    "eye-exact", "cell-products", "shadow-products", "shadow-wiring", "unit-wiring", "slope-exact", "row-setup",
+    "fixed-rects", "divider-exact", "run-order", "whole-frames", "played-lines",
 )  # fmt: skip
 """Names of the properties, in the order of tables. The file of each has underscores for dashes."""
 
@@ -94,9 +82,6 @@ ALONE: dict[str, Callable[[Facts], Alone]] = {
     "wishbone": lambda facts: BridgeAlone("wishbone", facts["ADDRESS_BITS"]),
     "apb": lambda facts: BridgeAlone("apb", facts["ADDRESS_BITS"]),
     "tester": lambda facts: TesterAlone(facts["COORDINATE_BITS"], facts["REFLECTIONS"]),
-    "fold": lambda facts: FoldAlone(
-        facts["COORDINATE_BITS"], facts["SLOPE_BITS"], facts["MIRRORS"], staged=not facts["VIEW_DISTANCE"]
-    ),
     "queue": lambda facts: QueueAlone(facts["COLUMNS"], facts["PLACES"]),
     "list": lambda facts: ListAlone(facts["UNITS"], facts["ROWS"], facts["COLUMNS"], facts["ENTRIES"], facts["PIXELS"]),
     "table": lambda facts: TableAlone(facts.config.engine, bool(facts["ALIKE"])),
@@ -118,16 +103,9 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
     "PASS_LATENCY": lambda config: engine_of(config).pass_latency(config),
     "GROUP_CYCLES": lambda config: engine_of(config).group_cycles(config),
     "NEAREST": lambda config: config.rounding == "nearest",
-    "MIXES": mixes,
-    "STAGED": is_staged,
     # Latencies.
-    "LEAD": lambda config: 0 if config.facts.line_buffered else beam_latency(config),
-    "AIM_LATENCY": lambda config: AIM_LATENCY,
+    "LEAD": lambda config: int(config.screen_geometry.clocks_per_pixel == 1),
     "SETUP_LATENCY": lambda config: SETUP_LATENCY,
-    "TESTER_LATENCY": lambda config: TESTER_LATENCY,
-    "BLEND_LATENCY": blend_latency,
-    "CONTEST_LATENCY": contest_latency,
-    "FOLD_LEAD": fold_lead,
     # Registers.
     "ADDRESS_BITS": lambda config: address_bits(*config.map),
     "VERSION_WORD": lambda config: register_map(*config.map)["version"].reset,
@@ -140,7 +118,7 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
         name.upper(): getattr(widths, name)
         for name in (
             "index_bits", "unit_bits", "offset_bits", "row_bits", "position_bits", "factor_bits",
-            "eye_bits", "walk_bits", "wide_walk_bits", "shift_bits", "fold_bits", "share_bits",
+            "eye_bits", "walk_bits", "wide_walk_bits", "share_bits",
         )
     },
     "SLOPE_BITS": widths.exact_slope_bits,
@@ -153,9 +131,6 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
     "RECT_BITS": lambda config: len(Rect(config).word),
     "SURFACE_BITS": lambda config: len(Surface(config).word),
     "MIRROR_BITS": lambda config: len(Mirror(config).word),
-    "CANDIDATE_BITS": lambda config: len(Candidate(config).word),
-    "NUMERATOR_BITS": lambda config: len(Candidate(config).numerator),
-    "DENOMINATOR_BITS": lambda config: len(Candidate(config).denominator),
 }  # fmt: skip
 """Numbers of a design, by the names that they have in wrappers."""
 

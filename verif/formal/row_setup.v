@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The start of a row at full width, with any function instead of multiplication: after start_line each rectangle is
-// fetched once, in order. Four cycles after its fetch its load bit, and no other, marks its outputs: the distances from
-// the camera, their products with the slope, and the growth per column of a camera that does not turn.
+// The start of a group at full width: after start_line each rectangle is fetched once, in order. Four cycles after its
+// fetch its load bit, and no other, marks its outputs: the distances from the camera, their products with the slope, and
+// the growth per column.
 //
-// Assumed, as the renderer guarantees: a start no sooner than the last fetch; an axis is 0, 1 or 2; a rectangle comes
-// two cycles after its fetch, with the slope and the camera of that cycle. Reset may come at any time.
-//
-// For the culler (ADDERS) a bound may be one unit outside the world, and a product replaces each multiplier made of
-// adders: its operands are proved here, its digits are tested.
+// Assumed, as the culler guarantees: a start no sooner than the last fetch; an axis is 0, 1 or 2; a bound is at most one
+// unit outside the world; a rectangle comes two cycles after its fetch, with the slope and the camera of that cycle.
+// Reset may come at any time. A product replaces each multiplier made of adders: its operands are proved here, its
+// digits are tested.
 //
 // [proof]
 // claim = """each rectangle is loaded once, in order, with its distances and their products with the slope, at \
@@ -16,17 +15,14 @@
 // any_product = true
 // induction = 5
 // reach = 10
-// quick = ["beam", "exact culling=1"]
-// designs = ["beam two pairs turn"]
-// [parameters]  # the culler has multipliers made of adders, wider bounds, and no looks
-// ADDERS = "CULLING"
-// BOUND_BITS = "WIDE_BITS if CULLING else COORDINATE_BITS"
-// TO_BOUND_BITS = "WIDE_BITS if CULLING else DISTANCE_BITS"
+// quick = ["exact culling=1"]
+// designs = ["seed units=16 rectangles=4 allow_underrun"]
+// [parameters]
 // SLOPE_BITS = "SLOPE_BITS + 1"
 // [faults]
-// "beam-vga240-s2-u1-r12-m1-c8" = ["rect_setup.number_2 as number_1", "rect_setup.number edge in 24",
-//   "rect_setup.slope_a_2 as slope_q_2", "rect_setup.distance negated", "rect_setup.to_high_p signed-short"]
-// "exact-vga240-u4-r12-m1-c8-k1" = ["rect_setup.to_low_q_2 as to_high_q_2", "rect_setup.slope_p_2 as slope_q_2"]
+// "exact-vga240-u4-r12-m1-c8-k1" = ["rect_setup.number_2 as number_1", "rect_setup.number edge in 24",
+//   "rect_setup.slope_a_2 as slope_q_2", "rect_setup.distance negated", "rect_setup.to_high_p signed-short",
+//   "rect_setup.to_low_q_2 as to_high_q_2", "rect_setup.slope_p_2 as slope_q_2"]
 
 module array_multiplier (
     input signed [9:0] multiplicand, input signed [8:0] multiplier, output signed [17:0] product);
@@ -65,18 +61,14 @@ always @* begin
     end
 end
 
-// A bound, and the assumption about bounds in the culler: at most one unit outside the world.
-function signed [WIDE-1:0] place(input [BOUND_BITS-1:0] bound);
-    place = ADDERS ? $signed(bound) : $signed({1'b0, bound});
-endfunction
 function near_world(input signed [WIDE-1:0] value);
     near_world = value >= -1 && value <= 1 << COORDINATE_BITS;
 endfunction
-wire signed [WIDE-1:0] low_u = place(rects_rect_u_low), high_u = place(rects_rect_u_high);
-wire signed [WIDE-1:0] low_v = place(rects_rect_v_low), high_v = place(rects_rect_v_high);
+wire signed [WIDE-1:0] low_u = $signed(rects_rect_u_low), high_u = $signed(rects_rect_u_high);
+wire signed [WIDE-1:0] low_v = $signed(rects_rect_v_low), high_v = $signed(rects_rect_v_high);
 always @* begin
     assume (axis < 3);
-    if (ADDERS) assume (near_world(low_u) && near_world(high_u) && near_world(low_v) && near_world(high_v));
+    assume (near_world(low_u) && near_world(high_u) && near_world(low_v) && near_world(high_v));
 end
 
 // The definition, in numbers wide enough for any distance. p is y unless the plane is on y, then x; q is z unless the
@@ -92,20 +84,20 @@ function fits(input signed [WIDE-1:0] value, input [3:0] bits);
 endfunction
 always @* begin
     assert (fits(to_plane, DISTANCE_BITS));
-    assert (fits(to_low_p, TO_BOUND_BITS) && fits(to_high_p, TO_BOUND_BITS));
-    assert (fits(to_low_q, TO_BOUND_BITS) && fits(to_high_q, TO_BOUND_BITS));
+    assert (fits(to_low_p, WIDE_BITS) && fits(to_high_p, WIDE_BITS));
+    assert (fits(to_low_q, WIDE_BITS) && fits(to_high_q, WIDE_BITS));
 end
 
 // The distances, in bits in which they fit, and their products with the slope, one and two cycles later.
-reg signed [TO_BOUND_BITS-1:0] n, low_p, high_p, low_q, high_q;
+reg signed [WIDE_BITS-1:0] n, low_p, high_p, low_q, high_q;
 reg signed [SLOPE_BITS-1:0] slope_a, slope_p, slope_q;
 wire signed [WALK_BITS-1:0] product_p = n * slope_p, product_q = n * slope_q;
 wire signed [WALK_BITS-1:0] product_low_p = low_p * slope_a, product_high_p = high_p * slope_a;
 wire signed [WALK_BITS-1:0] product_low_q = low_q * slope_a, product_high_q = high_q * slope_a;
 reg signed [WALK_BITS-1:0] way_p, way_q;
 reg [4*WALK_BITS-1:0] bounds;
-reg [TO_BOUND_BITS-1:0] distance;
-reg [4*TO_BOUND_BITS-1:0] to_bounds;
+reg [WIDE_BITS-1:0] distance;
+reg [4*WIDE_BITS-1:0] to_bounds;
 always @(posedge clk) begin
     n <= to_plane;
     low_p <= to_low_p;
@@ -123,24 +115,11 @@ always @* if (ready && load != 0) begin
     assert (facet_usable == usables[3] && facet_axis == $past(axis, 2));
     assert (facet_distance == distance[DISTANCE_BITS-1:0]);
 end
-generate
-    if (TURN) begin: starts
-        always @* if (ready && load != 0) assert (start_word == {way_p, way_q, bounds});
-    end
-    else begin: starts
-        always @* if (ready && load != 0) begin
-            assert (start_word == {way_p, bounds} && facet_way_q == way_q);
-            if ($past(axis, 2) == 1) assert (growth_word == to_bounds);
-            else assert (growth_word == {distance, {4*TO_BOUND_BITS{1'b0}}});
-        end
-    end
-    if (!ADDERS) begin: looks
-        wire [LOOK_BITS-1:0] look = rects_rect_word[4*BOUND_BITS +: LOOK_BITS];
-        reg [LOOK_BITS-1:0] look_1, look_2;
-        always @(posedge clk) {look_2, look_1} <= {look_1, look};
-        always @* if (ready && load != 0) assert (facet_word[LOOK_BITS-1:0] == look_2);
-    end
-endgenerate
+always @* if (ready && load != 0) begin
+    assert (start_word == {way_p, bounds} && facet_way_q == way_q);
+    if ($past(axis, 2) == 1) assert (growth_word == to_bounds);
+    else assert (growth_word == {distance, {4*WIDE_BITS{1'b0}}});
+end
 
 always @* cover (ready && load == 2 && facet_usable);
 endmodule

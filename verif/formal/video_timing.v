@@ -14,13 +14,13 @@
 // induction = 1
 // quick = [
 //   "vga240: one-unit", "vga200: one-unit rows=200", "tiny48: one-unit screen=tiny", "toy: alone=video",
-//   "beam tiny48: beam two screen=tiny scale=1", "beam 1080, 2 pixels: beam two pairs",
+//   "span tiny48: span two screen=tiny scale=1", "span 1080, 2 pixels: span two pairs",
 // ]
 // [faults]
 // "toy" = ["video_generator.hs late in 30", "video_generator.vs late in 60", "video_generator.x edge in 40",
 //   "video_generator.vga_hs as pixel_red", "video_generator.vga_b as pixel_blue", "video_generator.vga_r late",
 //   "video_generator.scan_start_screen late in 80", "video_generator.line_repeat 0 in 200"]
-// "beam 1080, 2 pixels" = ["video_generator.in_columns late in 130"]
+// "span 1080, 2 pixels" = ["video_generator.in_columns late in 130"]
 
 module video_timing;
 localparam H_BLANK = H_FRONT + H_SYNC + H_BACK, H_TOTAL = H_BLANK + H_VISIBLE;

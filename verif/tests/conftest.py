@@ -56,7 +56,6 @@ PATTERNED_SCENE = FLOOR_SCENE + 'pattern = "rows"\ncolour2 = "#000000"'
 TINY = {
     "seed": configure(engine="seed", screen="tiny", units=8, rectangles=3),
     "exact": configure(engine="exact", screen="tiny", rectangles=3),
-    "beam": configure(engine="beam", screen="tiny", rectangles=3),
     "span": configure(engine="span", screen="tiny", rectangles=3),
 }
 """Designs for the small scene, by engine, for tests to which the design does not matter."""

@@ -25,7 +25,7 @@ def engine_options(facts: Facts) -> dict[str, st.SearchStrategy]:
     """Return options of an engine in addition to those of every engine."""
     found: dict[str, st.SearchStrategy] = {"screen": st.sampled_from(sorted({name for name, _ in facts.screens}))}
     found |= {look: st.booleans() for look in ("turn", "light") if look in facts.features}
-    if not facts.line_buffered:
+    if facts.whole_frames:
         return found | {"scale": st.sampled_from([1, 2, 4])}
     found |= {"units": st.sampled_from([1, 2, 4, 8, 16, 32, 64]), "culling": st.booleans()}
     if not facts.divides:

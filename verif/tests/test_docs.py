@@ -17,9 +17,10 @@ from conftest import BUILD, ROOT, called, make
 
 from raycaster.convert import digest
 from raycaster.design.options import CommandParser
-from raycaster.docs import blocks, drawings, facts, pages, proofs, tables, timing
+from raycaster.docs import blocks, drawings, facts, pages, proofs, spans, tables, timing
 from raycaster.docs.hdl import parts
 from raycaster.docs.results import main as results
+from raycaster.golden.exact import ExactModel
 from raycaster.rtl import engine
 from raycaster.runs import outcomes
 from raycaster.runs.digests import uncommented
@@ -73,6 +74,14 @@ def test_the_example_module_works(leaf_of, random, tmp_path: Path, monkeypatch):
     importlib.import_module("test_colour_dimmer").test_colour_dimmer(leaf_of, random)
 
 
+def test_the_example_row_is_drawn_so():
+    """The exact model draws the runs that the page about spans follows by hand."""
+    picture, start = ExactModel().render(spans.SCENE, spans.SCREEN), 0
+    for end, colour in spans.told().result.runs:
+        assert (picture[spans.ROW, start:end] == colour).all()
+        start = end
+
+
 def test_timing_diagrams_match_the_design():
     """The kept diagrams match the converted Verilog, lane by lane."""
     BUILD.mkdir(exist_ok=True)
@@ -122,12 +131,12 @@ def test_figures_are_kept(tmp_path: Path, monkeypatch):
 
 
 def test_only_other_verilog_makes_a_figure_stale(monkeypatch, capsys):
-    """Comments in the Verilog do not count; a module of the exact engine is not in the beam engine's Verilog."""
+    """Comments in the Verilog do not count; a module of the exact engine is not in the span engine's Verilog."""
     command = "raycaster verify soak --screen tiny --rectangles 1 --reflections 0 --engine "
     monkeypatch.setattr(tables, "current_digest", tables.current_digest.__wrapped__)
     monkeypatch.setattr(digest, "digest_of", digest.digest_of.__wrapped__)
-    exact, beam = (f"{command}{name}" for name in ("exact", "beam"))
-    now = {each: tables.current_digest(each) for each in (exact, beam)}
+    exact, span = (f"{command}{name}" for name in ("exact", "span"))
+    now = {each: tables.current_digest(each) for each in (exact, span)}
     kept = [outcomes.Outcome("one", each, "", "1234567", {}, verilog, "", {}) for each, verilog in now.items()]
     monkeypatch.setattr("raycaster.docs.results.outcomes", lambda: kept)
     begin = "module nearest_hit"
@@ -135,7 +144,7 @@ def test_only_other_verilog_makes_a_figure_stale(monkeypatch, capsys):
         monkeypatch.setattr(digest, "uncommented", lambda verilog, new=new: uncommented(verilog.replace(begin, new)))
         results(["--stale"])
         shown = " ".join(capsys.readouterr().out.split())
-        assert f"1234567 {state} {exact}" in shown and f"1234567 holds {beam}" in shown
+        assert f"1234567 {state} {exact}" in shown and f"1234567 holds {span}" in shown
     assert tables.current_digest(f"{command}gone") == ""
 
 

@@ -23,9 +23,9 @@ from raycaster.golden.picture import WRONG, count_wrong, diff_picture, first_wro
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import SeedModel, divide
 from raycaster.golden.world import Rectangles
-from raycaster.rtl.engines import BEAM
+from raycaster.rtl.engines import SPAN
 from raycaster.scene import Camera, Scene, load_scene, packaged_scenes
-from raycaster.screens import BEAM_SCREENS, SCREENS
+from raycaster.screens import LIST_SCREENS, SCREENS
 from raycaster.verif.random_world import (
     random_basis,
     random_camera,
@@ -191,12 +191,12 @@ def table_of(scene: Scene) -> Rectangles:
 def test_the_table_of_screens(name, random):
     """Each screen has the page's numbers, at every scale, and the monitor's pixels show the rays that the page says."""
     option, value = name.lower().split("=")
-    place = ("vga", int(value)) if option == "rows" else next(key for key in BEAM_SCREENS if key[0] == value)
-    screen, page = (BEAM_SCREENS | SCREENS)[place], screen_of_the_page(name)
+    place = ("vga", int(value)) if option == "rows" else next(key for key in LIST_SCREENS if key[0] == value)
+    screen, page = (LIST_SCREENS | SCREENS)[place], screen_of_the_page(name)
     found = screen.columns, screen.rows, screen.centre_column, screen.horizon_row, screen.view_distance
     assert tuple(page.values()) == (*found, screen.doubling)
-    engine, nowhere = "beam" if place in BEAM_SCREENS else "seed", Camera(position=(0, 0, 0))
-    for scale in BEAM.scales(screen) if engine == "beam" else (1,):
+    engine, nowhere = "span" if place in LIST_SCREENS else "seed", Camera(position=(0, 0, 0))
+    for scale in SPAN.scales(screen) if engine == "span" else (1,):
         config = configure(engine=engine, screen=place[0], rows=place[1], scale=scale)
         slopes, pixels = primary_slopes(config.screen_geometry), (6 if scale % 3 == 0 else page["pixels"]) // scale
         assert slopes.shape == (page["rows"] * scale, page["columns"] * scale, 3)
@@ -264,10 +264,10 @@ def test_a_trace_needs_no_order(model, random):
             assert np.array_equal(getattr(in_turn, name), getattr(found, name)), name
 
 
-@pytest.mark.parametrize("place", BEAM_SCREENS, ids=str)
+@pytest.mark.parametrize("place", LIST_SCREENS, ids=str)
 def test_a_finer_view_is_the_same_view(place):
     """The ray of pixel (s * row, s * column) at scale s is that of pixel (row, column) at scale 1, s times as long."""
-    screen = BEAM_SCREENS[place]
+    screen = LIST_SCREENS[place]
     for scale in range(1, screen.doubling + 1):
         if screen.doubling % scale == 0:
             fine, coarse = (primary_slopes(screen.scaled(one)) for one in (scale, 1))

@@ -138,7 +138,7 @@ def test_what_make_does_not_take_may_be_in_the_environment(tmp_path, monkeypatch
     """Neither do options count that are given, or that a program started by this one inherits."""
     monkeypatch.setenv(FROM_MAKE, "1")
     monkeypatch.setenv("HOME", str(tmp_path))
-    monkeypatch.setenv("ENGINE", "beam")
+    monkeypatch.setenv("ENGINE", "span")
     words = "ENGINE=exact", "SCREEN=tiny", "RECTANGLES=1", f"OUTPUT={tmp_path / 'verilog'}"
     assert called("verilog", *words, cwd=tmp_path).returncode == 0
     assert called("verilog", *words[1:], cwd=tmp_path).returncode == 0

@@ -79,7 +79,7 @@ def test_bash_completion(tmp_path: Path, capsys):
         "verify so": {"soak"},
         "sim mirr": {"mirror_room"},
         "sim --frac": {"--fraction-bits"},
-        "sim --engine b": {"beam"},
+        "sim --engine sp": {"span"},
     }.items():
         asked = COMPLETE.format(script=script, words=f"raycaster {words}")
         done = subprocess.run(["bash", "-c", asked], capture_output=True, text=True, check=True)

@@ -13,7 +13,7 @@ from small_program import write_program
 
 from raycaster.design.decide import configure
 from raycaster.errors import UserError
-from raycaster.golden.frames import screens_before
+from raycaster.golden.frames import scene_cycles
 from raycaster.memory_map import BUTTON_NAMES, MEMORY_WORDS
 from raycaster.play import game
 from raycaster.play.system import FASTEST, check_program, play
@@ -51,7 +51,10 @@ def test_a_program_runs(run, output, tmp_path):
     result = play(model, program, held, output / "play")
     assert result["frames"] == len(held)
     assert (result["again"] > 0) == (run == "late")
-    delay = 1 + screens_before(load_scene(scene), configuration)
+    delay = 1
+    if configuration.facts.whole_frames:
+        refresh = configuration.screen_geometry.frame_cycles
+        delay += scene_cycles(load_scene(scene), configuration) // refresh + 1
     assert result["shown"] == len(held) - delay
     greeting, letters = (output / "play" / "uart.txt").read_text().split("\n")
     assert greeting == "RAYCMEgo"

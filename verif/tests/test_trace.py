@@ -173,7 +173,7 @@ def test_window_has_its_rows_alone(sound):
     breaks = [cycle for cycle, (before, time) in enumerate(pairwise(times), 1) if time - before > CLOCK_NS]
     assert len(breaks) == config.facts.whole_frames
     *drawn, shown = (end - begin for begin, end in pairwise([0, *breaks, len(times)]))
-    rows = 1 + config.facts.line_buffered
+    rows = 2 - config.facts.whole_frames
     assert rows < shown / config.screen_geometry.row_cycles < rows + 0.2
     assert sum(drawn) < config.screen_geometry.frame_cycles / 8
     assert [path.name for path in waves.path.parent.parent.iterdir()] == ["row"], "nothing half-written is left"
@@ -199,7 +199,7 @@ def test_viewers_show_what_there_is(sound):
 
     [units] = re.findall(r"^\*-\d+\.\d+ (\d+) ", gtkwave, re.MULTILINE)
     expected = {"left": config.screen_geometry.rows - ray.row, "next_row": 1}
-    if config.facts.line_buffered:
+    if not config.facts.whole_frames:
         expected = {"place_row": ray.row, "place_column_offset": ray.offset, "steps_screen_to_ray": 1}
     signals = [description.signals(name)[0] for name in expected]
     # The first sample is of the cycle before the cursor.
@@ -207,7 +207,7 @@ def test_viewers_show_what_there_is(sound):
     assert [values[signal][1] for signal in signals] == [*expected.values()]
 
     filters = re.findall(r"^\^\d+ (\S+)$", gtkwave, re.MULTILINE)
-    kinds = [RayState] if config.facts.line_buffered else [SpanState, SweepState, PaintState]
+    kinds = [SpanState, SweepState, PaintState] if config.facts.whole_frames else [RayState]
     names = [[f"{getattr(kind, name)._val} {name}" for name in kind._names] for kind in kinds]
     assert [Path(path).read_text().split("\n")[:-1] for path in filters] == names
     state = description.states[0]

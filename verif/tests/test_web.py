@@ -20,14 +20,14 @@ from raycaster.golden.seed_engine import SeedModel
 from raycaster.play.machine import Machine, build_machine
 from raycaster.rtl.engines import SEED
 from raycaster.scene import Camera, Scene, SceneError, load_scene, packaged_scenes
-from raycaster.screens import BEAM_SCREENS, SCREENS, Screen
+from raycaster.screens import LIST_SCREENS, SCREENS, Screen
 from raycaster.sw.firmware import build_firmware
 from raycaster.sw.play_script import DEMO, load
 from raycaster.web.site import MODELS, write_site
 
 ROOM, TINY = (configure(**PAGE_MODELS[name]).screen_geometry for name in ("plain", "exact"))
 VGA = SCREENS["vga", 240]
-PLAY = BEAM_SCREENS["play", 240]
+PLAY = LIST_SCREENS["play", 240]
 MOST_BYTES = 1_200_000
 """Largest size of the whole page, compressed."""
 

@@ -26,7 +26,7 @@ from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.rtl.engines import ENGINES
 from raycaster.scene import UNTURNED
-from raycaster.screens import BEAM_SCREENS, SCREENS, Screen, Span
+from raycaster.screens import LIST_SCREENS, SCREENS, Screen, Span
 from raycaster.verif.expected import TraceCycle, sorted_rect, trace_cycles
 from raycaster.verif.random_world import random_basis
 
@@ -39,9 +39,9 @@ SMALL_SCREEN = Screen(
 
 def small_config(screen: Screen = SMALL_SCREEN, **options) -> Configuration:
     """Make a configuration for a screen that has no name."""
-    buffered = ENGINES[options.get("engine", "seed")].facts.line_buffered
+    buffered = not ENGINES[options.get("engine", "seed")].facts.whole_frames
     screen = screen if buffered else replace(screen, clocks_per_pixel=1)
-    with mock.patch.dict(SCREENS if buffered else BEAM_SCREENS, {("tiny", screen.rows): screen}):
+    with mock.patch.dict(SCREENS if buffered else LIST_SCREENS, {("tiny", screen.rows): screen}):
         config = configure(screen="tiny", rows=screen.rows, **options)
         shown = screen.scaled(config.scale)
         # The first access looks the screen up and caches it.

@@ -247,10 +247,8 @@ def chain_inputs(chain: Chain, axis: int = 0, back: bool = False) -> dict[str, i
 
 
 def span_config(**options: Any) -> Configuration:
-    """Make a design for the blocks of the span engine, on any screen; other engines check rows and looks."""
-    light = options.pop("light", False)
-    config = any_config(engine="beam" if "scale" in options else "exact", **options)
-    return replace(config, light=light)
+    """Make a design of the span engine, with a ray for each pixel of the coarsest screen unless it has a scale."""
+    return any_config(engine="span", **{"scale": 1, **options})
 
 
 def any_slope(random: np.random.Generator, config: Configuration) -> tuple[tuple[int, ...], tuple[int, ...]]:

@@ -16,7 +16,7 @@ from raycaster.configuration import Configuration
 from raycaster.golden.rays import primary_slopes
 from raycaster.rtl.buffered.ray_caster import ray_caster
 from raycaster.rtl.common.widths import pixel_bits
-from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
+from raycaster.rtl.cull.rect_setup import SETUP_LATENCY
 from raycaster.scene import UNTURNED
 from raycaster.verif.expected import TraceCycle, rect_cycles, sorted_rect, trace_cycles
 from raycaster.verif.random_world import random_basis

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Leaf tests of `ray_caster_renderer`."""
 
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -20,7 +19,6 @@ from vectors import designs
 from raycaster.golden.engines import model_of
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
-from raycaster.rtl.beam.beam_renderer import beam_renderer
 from raycaster.rtl.buffered.ray_caster_renderer import ray_caster_renderer
 from raycaster.rtl.engines import engine_of
 from raycaster.screens import Screen, Span
@@ -101,21 +99,15 @@ def test_ray_caster_renderer(config, leaf_of, random):
     assert max(output["progress_group_cycles"] for output in in_second) == group
 
 
-LONG_LINE = replace(TINY_SCREEN, horizontal=Span(16, 8, 24, 60, active_high=False))
-"""A screen whose lines are long enough to set up a line at two pixels per clock."""
-
-
 @designs(
     small_config(TINY_SCREEN, units=2, rectangles=1, reflections=1, divider_bits=1),
-    small_config(TINY_SCREEN, engine="beam", rectangles=1, reflections=1, scale=1),
-    small_config(LONG_LINE, engine="beam", rectangles=1, reflections=1, pixels=2),
-    slow=["beam-tiny2-s2-u2", "seed"],
+    slow=["seed"],
 )
 def test_ray_caster_renderer_scenes(config, leaf_of, random):
-    """One scene per frame, with one rectangle anywhere, and once disabled; both renderers."""
+    """One scene per frame, with one rectangle anywhere, and once disabled."""
     screen = config.screen_geometry
-    leaf = leaf_of(ray_caster_renderer if config.facts.line_buffered else beam_renderer, config)
-    count = leaf.some(50 if config.engine == "beam" else 30)
+    leaf = leaf_of(ray_caster_renderer, config)
+    count = leaf.some(30)
     scenes = [scene_in_view(random, config, number % 3) for number in range(count)]
     camera, table, background, reflections, words = next(scene for scene in scenes if len(np.unique(scene[-1])) > 1)
     disabled = Rectangles(table.corners, table.colours, np.zeros(1, dtype=bool))
@@ -131,10 +123,6 @@ def test_ray_caster_renderer_scenes(config, leaf_of, random):
         leaf.stimulus += [scene] * (screen.frame_cycles if number else start + 1 + screen.frame_cycles)
     leaf.stimulus += [{"picture_run": 0}] * screen.frame_cycles
     shown = leaf.cycle - 2
-    if config.engine == "beam":
-        # Reset right after a row was announced; that row must not begin in the following blanking.
-        leaf.stimulus += [{"picture_run": 1}] * (screen.doubling * screen.line_cycles + 2)
-        leaf.stimulus += [{"reset": 1}] * 2 + [{"reset": 0}] * 3 * screen.line_cycles
     leaf.stimulus += [{"reset": 1}] * 2
     outputs = leaf.check(settled=2 + start + 6)[2:]
     assert not any(output["progress_busy"] for output in outputs[shown:])

@@ -16,7 +16,7 @@ from raycaster.sim.register_model import Agent
     sized(1, reflections=0, fraction_bits=8, rounding="nearest", divider_bits=3, colour_bits=4),
     sized(32, reflections=2, units=320, rows=200),
     sized(2, engine="exact", turn=True, patterns=True),
-    sized(2, engine="beam", materials=True),
+    sized(2, engine="exact", materials=True),
 )
 def test_avalon_interface(config, leaf_of, random):
     width = address_bits(config.rectangles)

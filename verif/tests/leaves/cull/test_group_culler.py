@@ -14,7 +14,7 @@ from raycaster.design.decide import configure
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.cull.group_culler import group_culler
-from raycaster.rtl.engine.rect_setup import SETUP_LATENCY
+from raycaster.rtl.cull.rect_setup import SETUP_LATENCY
 from raycaster.rtl.engines import engine_of
 from raycaster.verif.expected import sorted_rect
 
@@ -26,7 +26,7 @@ from raycaster.verif.expected import sorted_rect
         ({"culling": "0"}, False, "seed-vga240-u32-r12-m1-f0t-d1-c8-k0"),
         ({"engine": "exact"}, False, "exact-vga240-u4-r12-m1-c8"),
         ({"engine": "exact", "culling": "1"}, True, "exact-vga240-u4-r12-m1-c8-k1"),
-        ({"engine": "beam"}, False, "beam-vga240-s2-u1-r12-m1-c8"),
+        ({"engine": "span"}, False, "span-vga240-s2-u1-r12-m1-l57600-c8"),
     ],
 )
 def test_which_designs_cull(options, culls, name):
@@ -38,9 +38,9 @@ def test_which_designs_cull(options, culls, name):
     assert cycles(config) == cycles(configure(**{**options, "culling": None}))
 
 
-def test_the_beam_engine_does_not_cull():
-    with pytest.raises(ConfigurationError, match=r"^culling: the beam engine takes all rectangles at once; leave it"):
-        configure(engine="beam", culling="1")
+def test_the_span_engine_does_not_cull():
+    with pytest.raises(ConfigurationError, match=r"^culling: the span engine has no groups of columns; leave it out"):
+        configure(engine="span", culling="1")
 
 
 def any_rect(random: np.random.Generator, table: Sequence[dict[str, int]]) -> dict[str, int]:
@@ -92,7 +92,6 @@ def test_group_culler(config, leaf_of, random):
     """A frame's first group, then others in order and out of order, with enough or too little time to look ahead."""
     leaf = leaf_of(group_culler, config)
     count, groups, rows = config.rectangles, config.groups, config.screen_geometry.rows
-    latency = config.facts.rect_latency
     every, fates = (1 << count) - 1, set()
 
     # Faults are planted in the design with one unit; the others show that other sizes work too.
@@ -117,7 +116,6 @@ def test_group_culler(config, leaf_of, random):
             leaf.stimulus += [here, {**here, "start_group": 1}]
             for index in range(count) if number == 0 else ():
                 leaf.case({**here, **any_rect(random, shown), "rects_fetch": 1, "rects_index": index})
-                leaf.stimulus += [{**here, **any_rect(random, shown)}] * (latency - 1)
                 leaf.case({**here, **any_rect(random, shown), **shown[index]})
             time = count + SETUP_LATENCY + int(random.integers(3))
             if random.random() < 0.05:

@@ -16,8 +16,8 @@ from raycaster.rtl.cull.group_tester import group_tester
 @culling_designs
 def test_group_tester_at_its_limits(config, leaf_of, random):
     slopes_of = dict.fromkeys(("column_slope", "row_slope"), Signed(exact_slope_bits(config) + 1))
-    ports = {"facet": lambda: Facet(config), "growth": lambda: Walk(config, WIDE_BITS)}
-    ports |= {"start": lambda: Walk(config, wide_walk_bits(config)), "load": config.rectangles}
+    ports = {"facet": lambda: Facet(config), "growth": lambda: Walk(WIDE_BITS)}
+    ports |= {"start": lambda: Walk(wide_walk_bits(config)), "load": config.rectangles}
     leaf = leaf_of(group_tester, config, **ports, **slopes_of)
     units, far = config.units, 1 << wide_walk_bits(config) - 2
     slope_limit = 1 << exact_slope_bits(config) - 1

@@ -14,8 +14,6 @@ from raycaster.verif.expected import sorted_rect
 @by(count=[1, 12, 32], margin=[0, 1])
 def test_rect_copy(count, margin, leaf_of, random):
     config = exact_config(rectangles=count)
-    latency = config.facts.rect_latency
-
     leaf = leaf_of(rect_copy, config, copy=lambda: Rects(config, rect=WideRect()), margin=margin)
     written, asked = [], []
     for cycle in range(600):
@@ -36,8 +34,8 @@ def test_rect_copy(count, margin, leaf_of, random):
     memory, shown = {}, {}
     for read, wanted in enumerate(asked[:-2]):
         # A rectangle that arrived in the cycle before can be read.
-        if read > latency and leaf.stimulus[read - 1 - latency]["rects_fetch"]:
-            memory[leaf.stimulus[read - 1 - latency]["rects_index"]] = written[read - 1]
+        if read > 1 and leaf.stimulus[read - 2]["rects_fetch"]:
+            memory[leaf.stimulus[read - 2]["rects_index"]] = written[read - 1]
         shown = shown if wanted is None else memory[wanted]
         leaf.expected[read + 2] = shown
     leaf.check(settled=count + 8)

@@ -11,7 +11,7 @@ from raycaster.sim.register_model import Table
 from raycaster.verif.expected import sorted_rect
 
 LOOKS = [
-    {"engine": "exact"}, {"engine": "exact", "materials": True}, {"engine": "beam", "patterns": True},
+    {"engine": "exact"}, {"engine": "exact", "materials": True}, {"engine": "span", "patterns": True},
     {"engine": "exact", "materials": True, "patterns": True},
 ]  # fmt: skip
 

@@ -109,7 +109,7 @@ def check_frames(leaf, frames: Sequence[Frame], most: int | None = None) -> None
         assert not describe_difference(picture_of(rows, screen.columns), picture)
 
 
-@pytest.mark.slow_sets("exact-tiny48-u16-r32")
+@pytest.mark.slow_sets("span-tiny48-s1-u1-r32")
 @pytest.mark.parametrize("config", DESIGNS, ids=config_id)
 def test_span_unit(config, leaf_of, random):
     """Random, cornered and stiff worlds."""

@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Leaf tests of `ray_caster_module`."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from engine_vectors import (
-    SMALL_SCREEN,
     TINY_SCREEN,
     check_frames,
     golden_words,
@@ -28,13 +25,9 @@ from raycaster.rtl.engines import engine_of
 from raycaster.rtl.system.ports import module_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.scene import UNTURNED, Basis
-from raycaster.screens import Span
 from raycaster.sim.register_model import RegisterFile, Request
 from raycaster.verif.random_scenes import rectangle_of
 from raycaster.verif.random_world import random_basis
-
-LONG_BLANKING = replace(SMALL_SCREEN, horizontal=Span(32, 8, 24, 44, active_high=False))
-"""A screen with enough blanking for a beam engine whose camera can turn to set up a line."""
 
 
 def without_one(random: np.random.Generator, config: Configuration, scene: tuple) -> tuple:
@@ -112,16 +105,10 @@ def check_bus(config: Configuration, stimulus: list[dict[str, int]], outputs: li
     small_config(units=4, rectangles=3, reflections=1),
     small_config(units=4, rectangles=2, reflections=2, fraction_bits=4, rounding="nearest", colour_bits=4),
     small_config(units=2, rectangles=5, reflections=0, divider_bits=3, colour_bits=6),
-    small_config(engine="beam", rectangles=3, reflections=1, scale=1),
-    small_config(engine="beam", rectangles=2, reflections=2, scale=2, colour_bits=4),
     small_config(units=4, rectangles=3, reflections=1, materials=True, patterns=True),
     small_config(engine="exact", units=4, rectangles=3, reflections=2, turn=True, materials=True, patterns=True),
-    small_config(
-        LONG_BLANKING, engine="beam", rectangles=2, reflections=1, scale=1, turn=True, materials=True, patterns=True
-    ),
     slow=[""],
     quick=[
-        "beam-tiny4-s1-u1-r2-m1-c8-turn",
         "exact-tiny4-u4-r3-m2-c8-turn",
         "seed-tiny4-u4-r3-m1-f0t-d1-c8-materials-patterns",
     ],
@@ -170,7 +157,6 @@ def test_ray_caster_module(config, tmp_path, random):
 @pytest.mark.slow
 @designs(
     small_config(TINY_SCREEN, units=2, rectangles=3, reflections=1, divider_bits=2),
-    small_config(TINY_SCREEN, engine="beam", rectangles=3, reflections=1, scale=2),
 )
 def test_ray_caster_module_scenes(config, tmp_path, random):
     """One scene per frame over a bus that is never idle: words are read back, and written in part.

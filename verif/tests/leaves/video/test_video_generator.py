@@ -9,7 +9,7 @@ from vectors import by
 from raycaster.rtl.common.interfaces import Scan, Vga
 from raycaster.rtl.common.records import Pixel
 from raycaster.rtl.video.video_generator import video_generator
-from raycaster.screens import BEAM_SCREENS, SCREENS, Screen, Span
+from raycaster.screens import LIST_SCREENS, SCREENS, Screen, Span
 
 
 def video_model(screen: Screen, lead: int, at_start: bool, cycle: int, colours: list[list[int]]) -> dict[str, int]:
@@ -110,7 +110,7 @@ OUR_OWN = {"tiny": (128, 96), "play": (320, 240)}
 """Screens with timings of no standard, for simulation: pixels and lines."""
 
 
-@pytest.mark.parametrize("screens", [SCREENS, BEAM_SCREENS], ids=["buffered", "beam"])
+@pytest.mark.parametrize("screens", [SCREENS, LIST_SCREENS], ids=["buffered", "lists"])
 def test_the_timings_are_the_standards(screens):
     """Every screen, at every scale, with one pixel or two per clock."""
     seen = set()
@@ -125,4 +125,4 @@ def test_the_timings_are_the_standards(screens):
                 timing = (h.front, h.sync, h.back), (v.front, v.sync, v.back), (h.active_high, v.active_high)
                 assert (one.standard_hz, *timing) == MODES[mode], (name, rows, one.scale)
                 seen.add(mode)
-    assert seen == (set(MODES) if screens is BEAM_SCREENS else {mode for mode in MODES if mode[0] == 640})
+    assert seen == (set(MODES) if screens is LIST_SCREENS else {mode for mode in MODES if mode[0] == 640})

@@ -6,7 +6,6 @@ from myhdl import always, always_comb, block, instances
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.common.by_axis import along_a, along_p, along_q, by_axis
-from raycaster.rtl.common.records import Look
 from raycaster.rtl.common.widths import AXIS_BITS, DISTANCE_BITS, exact_slope_bits, index_bits
 from raycaster.rtl.engine.array_multiplier import array_multiplier
 
@@ -16,7 +15,7 @@ SETUP_LATENCY = 5
 
 @block
 def rect_setup(
-    clk, reset, start_line, rects, camera, slope, load, facet, growth, start, config: Configuration, in_adders=False
+    clk, reset, start_line, rects, camera, slope, load, facet, growth, start, config: Configuration
 ):  # fmt: skip
     """Fetch one rectangle per cycle after start_line, and compute the products from which a row starts.
 
@@ -27,28 +26,25 @@ def rect_setup(
     2006); along the row they grow linearly, so later columns need no multiplication (forward differences). Distances to
     bounds are as wide as the fields of growth, their products as wide as the fields of start.
 
-    If the camera turns, growth is not computed here: it is the start of another sweep, whose slope is the change of the
-    slope per column.
+    The products are made of adders, as the engine's units may need all of the chip's multipliers.
 
     Args:
         clk: the clock.
         reset: flag; synchronous reset, which ends the sweep.
         start_line: strobe; starts a sweep through all rectangles.
-        rects: `Rects`; index and fetch are outputs, and rect, with or without a look, comes two cycles after fetch.
+        rects: `Rects`; index and fetch are outputs, and rect, a `WideRect`, comes two cycles after fetch.
         camera: `Camera`; only its position is read.
         slope: `Vector` of the ray through the first column; constant from the third cycle after start_line on.
         load: unsigned output, `config.rectangles` bits, one per rectangle; high for the cycle in which the other
             outputs belong to that rectangle.
         facet: output `Facet` of the rectangle; valid with its bit of load.
-        growth: output `Walk`; the change of start per column, valid with load. Not driven with `config.turn`.
+        growth: output `Walk`; the change of start per column, valid with load.
         start: output `Walk` of the first column; valid with load.
         config: the design.
-        in_adders: make the products of adders, and use none of the chip's multipliers.
     """
     slope_bits = exact_slope_bits(config) + 1
-    bound_bits = DISTANCE_BITS if config.turn else len(growth.low_p)
+    bound_bits = len(growth.low_p)
     product_bits = len(start.way_p)
-    way_q_bits = product_bits if config.turn else len(facet.way_q)
     last = config.rectangles - 1
 
     reading, asked, at_hand = bit(), bit(), bit()
@@ -63,11 +59,10 @@ def rect_setup(
     number_0, number_1, number_2 = (unsigned(index_bits(config)) for _ in range(3))
     at_hand_2, usable_2 = bit(), bit()
     axis_2 = unsigned(AXIS_BITS)
-    look_2 = Look(config)
     distance_2 = signed(DISTANCE_BITS)
     to_low_p_2, to_high_p_2, to_low_q_2, to_high_q_2 = (signed(bound_bits) for _ in range(4))
     slope_a_2, slope_p_2, slope_q_2 = (signed(slope_bits) for _ in range(3))
-    way_q = signed(way_q_bits)
+    way_q = signed(len(facet.way_q))
     way_p, way_low_p, way_high_p, way_low_q, way_high_q = (signed(product_bits) for _ in range(5))
 
     @always(clk.posedge)
@@ -150,32 +145,14 @@ def rect_setup(
             slope_p_2.next = slope_p
             slope_q_2.next = slope_q
 
-    if facet.has("colour"):
-
-        @always(clk.posedge)
-        def hold_look():
-            if at_hand:
-                look_2.word.next = rects.rect.look
-
-    if in_adders:
-        products = [
-            array_multiplier(multiplicand=distance_2, multiplier=slope_p_2, product=way_p),
-            array_multiplier(multiplicand=distance_2, multiplier=slope_q_2, product=way_q),
-            array_multiplier(multiplicand=to_low_p_2, multiplier=slope_a_2, product=way_low_p),
-            array_multiplier(multiplicand=to_high_p_2, multiplier=slope_a_2, product=way_high_p),
-            array_multiplier(multiplicand=to_low_q_2, multiplier=slope_a_2, product=way_low_q),
-            array_multiplier(multiplicand=to_high_q_2, multiplier=slope_a_2, product=way_high_q),
-        ]
-    else:
-
-        @always_comb
-        def multiply():
-            way_p.next = distance_2 * slope_p_2
-            way_q.next = distance_2 * slope_q_2
-            way_low_p.next = to_low_p_2 * slope_a_2
-            way_high_p.next = to_high_p_2 * slope_a_2
-            way_low_q.next = to_low_q_2 * slope_a_2
-            way_high_q.next = to_high_q_2 * slope_a_2
+    products = [
+        array_multiplier(multiplicand=distance_2, multiplier=slope_p_2, product=way_p),
+        array_multiplier(multiplicand=distance_2, multiplier=slope_q_2, product=way_q),
+        array_multiplier(multiplicand=to_low_p_2, multiplier=slope_a_2, product=way_low_p),
+        array_multiplier(multiplicand=to_high_p_2, multiplier=slope_a_2, product=way_high_p),
+        array_multiplier(multiplicand=to_low_q_2, multiplier=slope_a_2, product=way_low_q),
+        array_multiplier(multiplicand=to_high_q_2, multiplier=slope_a_2, product=way_high_q),
+    ]
 
     @always(clk.posedge)
     def announce():
@@ -183,13 +160,8 @@ def rect_setup(
         if at_hand_2 and not reset:
             load.next[number_2] = True
 
-    new_facet = facet.joined(
-        usable=usable_2, axis=axis_2, distance=distance_2, way_q=way_q, colour=look_2.colour, mirror=look_2.mirror,
-        kind=look_2.kind, cell=look_2.cell, colour_2=look_2.colour_2,
-    )  # fmt: skip
-    first = start.joined(
-        way_p=way_p, way_q=way_q, low_p=way_low_p, high_p=way_high_p, low_q=way_low_q, high_q=way_high_q
-    )
+    new_facet = facet.joined(usable=usable_2, axis=axis_2, distance=distance_2, way_q=way_q)
+    first = start.joined(way_p=way_p, low_p=way_low_p, high_p=way_high_p, low_q=way_low_q, high_q=way_high_q)
 
     @always(clk.posedge)
     def present():
@@ -197,31 +169,28 @@ def rect_setup(
             facet.word.next = new_facet
             start.word.next = first
 
-    if not config.turn:
-        more_way_p, more_low_p, more_high_p, more_low_q, more_high_q = (signed(bound_bits) for _ in range(5))
+    more_way_p, more_low_p, more_high_p, more_low_q, more_high_q = (signed(bound_bits) for _ in range(5))
 
-        # A product grows if its slope component is D[y], the one that changes with the column.
-        @always_comb
-        def choose_growth():
-            more_way_p.next = distance_2
-            more_low_p.next = 0
-            more_high_p.next = 0
-            more_low_q.next = 0
-            more_high_q.next = 0
-            if axis_2 == 1:
-                more_way_p.next = 0
-                more_low_p.next = to_low_p_2
-                more_high_p.next = to_high_p_2
-                more_low_q.next = to_low_q_2
-                more_high_q.next = to_high_q_2
+    # A product grows if its slope component is D[y], the one that changes with the column.
+    @always_comb
+    def choose_growth():
+        more_way_p.next = distance_2
+        more_low_p.next = 0
+        more_high_p.next = 0
+        more_low_q.next = 0
+        more_high_q.next = 0
+        if axis_2 == 1:
+            more_way_p.next = 0
+            more_low_p.next = to_low_p_2
+            more_high_p.next = to_high_p_2
+            more_low_q.next = to_low_q_2
+            more_high_q.next = to_high_q_2
 
-        more = growth.joined(
-            way_p=more_way_p, low_p=more_low_p, high_p=more_high_p, low_q=more_low_q, high_q=more_high_q
-        )
+    more = growth.joined(way_p=more_way_p, low_p=more_low_p, high_p=more_high_p, low_q=more_low_q, high_q=more_high_q)
 
-        @always(clk.posedge)
-        def present_growth():
-            if at_hand_2:
-                growth.word.next = more
+    @always(clk.posedge)
+    def present_growth():
+        if at_hand_2:
+            growth.word.next = more
 
     return instances()

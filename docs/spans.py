@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: MIT
+"""The example row of the page about spans: its tables from the model, and the page's pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from raycaster.golden.spans import Chain, Drawing, Entry, Line, SpanModel, row_slope
+from raycaster.report.plots import BLUE, GREY, VERMILION, new_figure, styled, ticks
+from raycaster.rtl.engines import SPAN
+from raycaster.runs.outcomes import table
+from raycaster.scene import Camera, Rectangle, Scene, load_scene, packaged_scenes
+from raycaster.screens import LIST_SCREENS, Screen
+
+SCREEN = replace(LIST_SCREENS["tiny", 48], distance=20)
+ROW = 44
+SCENE = Scene(
+    title="A floor, a wall and a mirror",
+    camera=Camera(position=(60, 256, 120)),
+    rect=(
+        Rectangle(name="floor", corners=((0, 0, 0), (511, 511, 0)), colour=(200, 200, 180), mirror=0),
+        Rectangle(name="wall", corners=((400, 200, 0), (400, 300, 300)), colour=(80, 160, 255), mirror=0),
+        Rectangle(name="mirror", corners=((200, 400, 0), (500, 400, 200)), colour=(255, 96, 48)),
+    ),
+    reflections=1,
+)
+"""Small enough to follow by hand. In column c of the row, rays have the slope D = (20, c - 32, -6)."""
+
+MEASURED = ("matte", "mirror_room", "facing_mirrors")
+"""Scenes with 0, 1 and 2 reflections, for the plot of cycles."""
+
+
+class Told(Drawing):
+    """A row that is drawn, with the entries of each chain."""
+
+    def __init__(self, model: SpanModel):
+        lines = zip(*row_slope(SCREEN, SCENE.camera.basis, ROW), strict=True)
+        super().__init__(model, tuple(Line(*line) for line in lines))
+        self.chains: list[tuple[Chain, list[Entry]]] = []
+        self.draw()
+
+    def set_up(self, chain: Chain, rays: tuple[Line, ...] | None = None, ahead: Line | None = None) -> list[Entry]:
+        """Remember the entries, too."""
+        entries = super().set_up(chain, rays, ahead)
+        self.chains.append((chain, entries))
+        return entries
+
+
+def told() -> Told:
+    """Return the example row."""
+    return Told(SpanModel.of_scene(SCENE, SCREEN))
+
+
+def name_of(entry: Entry) -> str:
+    """Return the name of an entry's rectangle."""
+    return str(SCENE.rect[entry.rect.index].name)
+
+
+def entries() -> str:
+    """Table of the entries of the example row."""
+    rows = []
+    for chain, found in told().chains:
+        where = f"eye {chain.eye}, columns {chain.start} to {chain.stop - 1}"
+        for entry in found:
+            at_0, growth = entry.ahead
+            ahead = f"c - {-at_0}" if growth else str(at_0)
+            rows.append([where, name_of(entry), entry.distance, ahead, f"{entry.start} to {entry.stop - 1}"])
+    return table(["chain", "rectangle", "N", "e", "columns"], rows)
+
+
+def runs() -> str:
+    """The runs of the example row, in words."""
+    start, words = 0, []
+    for end, colour in told().result.runs:
+        words.append(f"{start} to {end - 1} `#{colour[0]:02x}{colour[1]:02x}{colour[2]:02x}`")
+        start = end
+    return ", ".join(words)
+
+
+def _shares(colour: tuple[int, ...]) -> tuple[float, ...]:
+    return tuple(channel / 255 for channel in colour)
+
+
+@styled
+def row_picture() -> Figure:
+    """Draw the example row: its entries as bars, in each chain, above the runs."""
+    row = told()
+    figure, axes = new_figure(2.6)
+    ax: Axes = axes[0, 0]
+    place, names = 0, []
+    for chain, found in row.chains:
+        for entry in found:
+            colour = _shares(entry.rect.colour)
+            ax.barh(place, entry.stop - entry.start, left=entry.start, color=colour, edgecolor="black", linewidth=0.6)
+            names.append(f"{name_of(entry)}{' in the mirror' if chain.distance else ''}")
+            place += 1
+    start = 0
+    for end, colour in row.result.runs:
+        ax.barh(place + 0.3, end - start, left=start, color=_shares(colour), edgecolor="black", linewidth=0.6)
+        start = end
+    ax.set_yticks([*range(place), place + 0.3], [*names, "runs"])
+    ax.set_xlim(0, SCREEN.columns)
+    ax.set_xlabel(f"column of row {ROW}")
+    ax.invert_yaxis()
+    return figure
+
+
+@styled
+def fold_picture() -> Figure:
+    """Draw the example from above: a ray that the mirror reflects, and the straight one from the mirrored eye."""
+    x, y, _ = SCENE.camera.position
+    figure, axes = new_figure(3.4)
+    ax: Axes = axes[0, 0]
+    for rect, colour in zip(SCENE.rect[1:], (BLUE, VERMILION), strict=True):
+        (x_0, y_0, _), (x_1, y_1, _) = rect.corners
+        ax.plot([x_0, x_1], [y_0, y_1], color=colour, linewidth=3)
+        ax.annotate(str(rect.name), ((x_0 + x_1) / 2, (y_0 + y_1) / 2), xytext=(6, -10), textcoords="offset points")
+    plane = SCENE.rect[2].corners[0][1]
+    beyond = SCENE.rect[1].corners[0][0]
+    for column in (47, 52):
+        slope = column - SCREEN.centre_column
+        met, hit = (plane - y) / slope, (beyond - x) / SCREEN.view_distance
+        at = [x + SCREEN.view_distance * t for t in (0, met, hit)]
+        ax.plot(at, [y, plane, 2 * plane - y - slope * hit], color="black", linewidth=1)
+        ax.plot(at[:2], [2 * plane - y, plane], color=GREY, linewidth=1, linestyle="--")
+    for place, text in ((y, "eye"), (2 * plane - y, "mirrored eye")):
+        ax.plot([x], [place], "o", color="black", markersize=5)
+        ax.annotate(text, (x, place), xytext=(8, -3), textcoords="offset points")
+    ax.set_xlabel("x")
+    ax.set_ylabel("y")
+    ax.set_aspect("equal")
+    return figure
+
+
+def finer(columns: int) -> Screen:
+    """Return the view of 180 rows with this many columns, a multiple of 320."""
+    base, scale = LIST_SCREENS["vga", 180], columns // 320
+    return replace(
+        base, columns=columns, rows=base.rows * scale, horizon_row=base.horizon_row * scale, doubling=1, scale=scale
+    )
+
+
+def mean_cycles(name: str, columns: int, some: int = 24) -> float:
+    """Return the mean cycles of a packaged scene's rows, of as many as this, evenly spread."""
+    scene, screen = load_scene(packaged_scenes()[name]), finer(columns)
+    model = SpanModel.of_scene(scene, screen)
+    chosen = [screen.rows * (2 * place + 1) // (2 * some) for place in range(some)]
+    return sum(model.row(*row_slope(screen, scene.camera.basis, row)).cycles for row in chosen) / some
+
+
+def measured() -> Iterator[tuple[str, int, list[tuple[int, float]]]]:
+    """Yield each measured scene, its reflections, and its mean cycles per row by columns."""
+    for name in MEASURED:
+        points = [(columns, mean_cycles(name, columns)) for columns in (320, 640, 1280, 1920, 3840)]
+        yield name, load_scene(packaged_scenes()[name]).reflections, points
+
+
+@styled
+def cycles_picture() -> Figure:
+    """Draw the mean cycles of a row against its columns."""
+    figure, axes = new_figure(2.8)
+    ax: Axes = axes[0, 0]
+    for marker, (name, reflections, points) in zip("os^", measured(), strict=True):
+        label = f"{name}, {reflections} reflection{'s' * (reflections != 1)}"
+        ax.plot(*zip(*points, strict=True), marker=marker, color=SPAN.facts.colour, markersize=4, label=label)
+    ax.plot([320, 3840], [320, 3840], color=GREY, linestyle=":", label="a cycle per column")
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    ticks(ax.xaxis)
+    ticks(ax.yaxis)
+    ax.set_xlabel("columns")
+    ax.set_ylabel("cycles per row of one unit")
+    figure.legend(loc="outside upper center", ncols=2)
+    return figure
+
+
+def pictures() -> dict[str, Figure]:
+    """Return the page's pictures, by name."""
+    return {"span_row": row_picture(), "span_fold": fold_picture(), "span_cycles": cycles_picture()}
