@@ -64,7 +64,7 @@ def draw_timing(build: Path) -> None:
 
 LIVE = """```{image} \\2
 :alt: \\1
-:target: web/index.html#walk
+:target: web/index.html#room
 :class: live
 ```
 
