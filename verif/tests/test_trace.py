@@ -175,7 +175,7 @@ def test_window_has_its_rows_alone(sound):
     *drawn, shown = (end - begin for begin, end in pairwise([0, *breaks, len(times)]))
     rows = 2 - config.facts.whole_frames
     assert rows < shown / config.screen_geometry.row_cycles < rows + 0.2
-    assert sum(drawn) < config.screen_geometry.frame_cycles / 8
+    assert sum(drawn) < config.screen_geometry.frame_cycles / 5
     assert [path.name for path in waves.path.parent.parent.iterdir()] == ["row"], "nothing half-written is left"
 
 
