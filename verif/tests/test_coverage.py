@@ -19,4 +19,4 @@ def test_holes_are_found(tmp_path: Path):
     holes = [point for point, count in counts.items() if not count]
     assert "avalon_interface: elsif: else if (bus_address == version_address) begin" in holes
     assert len(holes) < len(counts) / 5
-    assert {"span_renderer", "rect_mem"} <= {point.partition(":")[0] for point in counts}
+    assert {"frame_switch", "rect_mem"} <= {point.partition(":")[0] for point in counts}

@@ -169,6 +169,6 @@ def test_pages(tmp_path: Path):
     written = {page.with_suffix(".html").name for page in pages.PAGES if page.parent == pages.HERE}
     assert written | {"python_api.html"} <= {path.name for path in output.iterdir()}
     there = {f"{drawing.name}.svg" for drawing in (*blocks.DRAWINGS, *timing.DIAGRAMS)}
-    there |= {"error_and_time.svg", "view.svg"}
+    there |= {"error_and_time.svg", "view.svg", *(f"{name}.svg" for name in spans.pictures())}
     assert {path.name for path in output.glob("_images/*.svg")} == there, "each is on a page"
     assert (output / "register_map" / "index.html").is_file()
