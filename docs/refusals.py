@@ -23,7 +23,7 @@ MODULE = """\
 from myhdl import ConcatSignal, Constant, Signal, always, always_comb, block, concat, instances, intbv
 
 from raycaster.hdl.records import Record
-from raycaster.hdl.signals import Signed, bit, signed, tied, unconnected, unsigned
+from raycaster.hdl.signals import Signed, Unset, bit, signed, tied, unconnected, unsigned
 
 
 @block

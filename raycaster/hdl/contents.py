@@ -204,6 +204,9 @@ class Contents:
             if internals.is_combinational(part) and all(isinstance(one, (Tied, Constant)) for one in part.senslist):
                 reason = "reads constants only, and Verilog would never run it; compute their values outside of it"
                 self._refuse(f"{part.name} {reason}", part.name)
+            if not internals.keeps(part):
+                for name in (name for name, one in part.symdict.items() if isinstance(one, Unset)):
+                    self._refuse(f"{part.name} reads {name}, whose words are unknown at power-up; use a clock", name)
             edges = [getattr(edge, "sig", edge) for edge in getattr(part, "senslist", ())]
             edged = [id(edge.sig) for edge in getattr(part, "senslist", ()) if not isinstance(edge, SignalType)]
             if len({*edged}) < len(edged):

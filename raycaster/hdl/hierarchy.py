@@ -244,7 +244,7 @@ class _Converter:
             if isinstance(value, list) and value and isinstance(value[0], SignalType):  # a memory may be large
                 first = id(value) not in known
                 number = known.setdefault(id(value), len(known))
-                return number, type(value), [beginning(element) for element in value * first]
+                return number, type(value), len(value), [beginning(element) for element in value * first]
             if isinstance(value, (list, tuple)):
                 return [beginning(element) for element in value]
             parts = []

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Signals of a given width; and instance ports without a signal: tied to a constant, or left open."""
 
+from typing import Any
+
 from myhdl import ConcatSignal, ResetSignal, Signal, intbv
 
 from raycaster.hdl.internals import DerivedClock, SignalType
@@ -68,8 +70,22 @@ def signed(width: int) -> SignalType:
 class Unset(list):
     """Words of a memory that is unknown at power-up, as a large block RAM is: Verilog gives them no initial values.
 
-    In MyHDL they begin with those of the signals, so nothing may depend on a word before it is written.
+    In MyHDL a word is made when a process first reads or writes it, and begins with 0, so nothing may depend on a word
+    before it is written. Only clocked processes may read it, as no process can wait for a word that is not made yet.
     """
+
+    def __init__(self, places: int, width: int):
+        super().__init__([unsigned(width)])
+        self._places, self._width, self._made = places, width, dict(enumerate(self))
+
+    def __len__(self) -> int:
+        return self._places
+
+    def __getitem__(self, place: Any) -> Any:
+        number = range(self._places)[int(place)]
+        if number not in self._made:
+            self._made[number] = unsigned(self._width)
+        return self._made[number]
 
 
 def bit() -> SignalType:

@@ -20,7 +20,7 @@ def run_memory(clk, write, write_place, written, read_place, shown, places: int)
             cycle in which it was read.
         places: number of runs.
     """
-    memory = Unset(unsigned(len(written.word)) for _ in range(places))
+    memory = Unset(places, len(written.word))
     fetched = unsigned(len(written.word))
 
     @always(clk.posedge)

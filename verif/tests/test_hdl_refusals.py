@@ -190,6 +190,11 @@ def process(statements: str) -> str:
             "inner: word is driven by another block; pass it as an argument",
         ),
         (
+            "words = Unset(4, 4)\n@always(clk.posedge)\ndef store():\n    words[index].next = a\n"
+            + process("result.next = words[index]"),
+            "process reads words, whose words are unknown at power-up; use a clock",
+        ),
+        (
             "kept = intbv(0)[4:]\n" + process("result.next = kept\nkept[:] = a"),
             "kept keeps its value from run to run, which makes a latch",
         ),
