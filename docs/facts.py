@@ -18,7 +18,6 @@ from raycaster.registers import compile_registers
 from raycaster.rtl.buffered.engine import GROUP_OVERHEAD
 from raycaster.rtl.common.interfaces import AIM_CYCLES
 from raycaster.rtl.common.widths import exact_slope_bits
-from raycaster.rtl.cull.rect_setup import SETUP_LATENCY
 from raycaster.rtl.engine.engine import Engine
 from raycaster.rtl.engines import ENGINES, EXACT, SEED
 from raycaster.rtl.exact.exact_control import PATTERN_LATENCY, WRITE_AT
@@ -176,7 +175,6 @@ def facts() -> dict[str, str]:
         "group": str(SEED.group_cycles(default)),
         "budget": str(default.group_budget),
         "row": f"{default.screen_geometry.row_cycles:,}",
-        "setup": str(SETUP_LATENCY),
         "traced_units": str(CONFIGURATION.units),
         "traced_group": str(SEED.group_cycles(CONFIGURATION)),
     }
