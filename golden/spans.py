@@ -512,10 +512,9 @@ class Drawing:
         """Return the lines that are not negative where a chain's rays meet a rectangle, by their numbers.
 
         There are none if the plane is not ahead at either end of the chain, or if the rectangle is before the last
-        mirror. Number 0 is only needed if the others do
-        not imply it: the rectangle is a point, or the slope may be 0 in some column; and for rays from the light, which
-        end at the surface. So is number 5, unless the whole rectangle is beyond the last mirror. See `set_up` for the
-        arguments.
+        mirror. Number 0 is needed for rays from the light, which end at the surface, and otherwise only if the bounds
+        do not imply it: the rectangle is a point, or the slope may be 0 in some column. Number 5 is needed unless the
+        whole rectangle is beyond the last mirror. See `set_up` for the arguments.
         """
         distance, ahead = self.approach(chain, rect, rays)
         first, last = ahead.at(chain.start) > 0, ahead.at(chain.stop - 1) > 0

@@ -159,13 +159,3 @@ class Walk(Record):
 
     def __init__(self, bits: int):
         super().__init__(dict.fromkeys(("way_p", "low_p", "high_p", "low_q", "high_q"), Signed(bits)))
-
-
-class CellDivision(Record):
-    """A division after its steps down to a bit place: the rest of the dividend, the divisor, and the cell size.
-
-    cell: as in `Look`; odd: the quotient bit whose weight is the cell size, once it is known.
-    """
-
-    def __init__(self, divisor_bits: int, place: int):
-        super().__init__({"rest": divisor_bits + place, "divisor": divisor_bits, "cell": CELL_BITS, "odd": 1})

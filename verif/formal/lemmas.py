@@ -209,21 +209,6 @@ slope-in-range: a slope of parts up to M in magnitude is at most M times the sum
 next-column: the product at the next column is the product plus its growth, R times the distance
   given now == n*D, next == now + n*R
   then next == n*(D + R)
-fold-at-a-mirror: a mirror at n turns x - E = s (X - E) + T into 2 n - (x - E), with -s and 2 n - T
-  given s*s == 1
-  then 2*n - (s*(X - E) + T) == -s*(X - E) + (2*n - T)
-fold-at-two-on-an-axis: mirrors at the distances m and then n on one axis move the room by 2 (n - m)
-  then 2*n - (2*m - x) == x + 2*(n - m)
-folded-way: if s t D[a] + T[a] = n, D[a] (z t D[p] + T[p]) = s z n D[p] + T[p] D[a] - s z T[a] D[p]
-  given s*s == 1, s*t*Da + Ta == n
-  then Da*(z*t*Dp + Tp) == s*z*n*Dp + (Tp*Da - s*z*Ta*Dp)
-folded-bounds: E = C + T: lo <= E + D n/e <= hi is (lo - C) e <= D n + T e <= (hi - C) e, reversed if e < 0
-  given e != 0, t*e == n
-  then (lo <= C + T + D*t <= hi) == ((e > 0 and (lo - C)*e <= D*n + T*e <= (hi - C)*e) or (e < 0
-    and (hi - C)*e <= D*n + T*e <= (lo - C)*e))
-ahead-of-mirror: a point beyond a mirror that is ahead, m/d > 0, or in its plane, is ahead
-  given e > 0, d > 0, m > 0, m*e <= d*n
-  then n > 0
 complement-adds-one: a + b + 1 = a - ~b, and ~w + 1 = -w
   then a + b + 1 == a - (-b - 1) and (-b - 1) + 1 == -b
 division: with w = e q + r, 0 <= r < e: k e <= w is k <= q; k e < w and w <= k e depend on r if k = q
@@ -261,9 +246,6 @@ between: a linear value that is less than another at both ends of a row is less 
 shares: if m quarters are mirrored, a weight is the sum of what the mirror keeps and what it passes on
   given 4*T == (4 - m)*s + m*U, 4*v == w*m
   then w*T == (w - v)*s + v*U
-product-in-parts: a product is the product with a factor's low part, plus c times that with its high part
-  given e == l + c*h
-  then n*e == n*l + c*(n*h)
 from-the-light: S = (E - L) e + D n leads from the light L to the point E + D n/e, which it meets at 1/e
   given t*e == n, s*e == 1, S == (E - L)*e + D*n
   then L + S*s == E + D*t
