@@ -25,7 +25,7 @@ from raycaster.fit.fixing import SCOPES, Fixing, fix, general_design, show
 from raycaster.fpga.cells import FAMILIES, Area, measure
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
-from raycaster.golden.frames import check_list, cycles_of, runs_of, scene_cycles, scene_rows
+from raycaster.golden.frames import check_list, cycles_of, refreshes, runs_of, scene_cycles, scene_rows
 from raycaster.golden.picture import count_wrong
 from raycaster.output import Console, Table
 from raycaster.rtl.engines import ENGINES, engine_of
@@ -116,7 +116,7 @@ def in_time(design: Design, options: Mapping[str, Any]) -> dict[str, int]:
     found = {}
     if "units" not in options:
         times = ((units, cycles_of(rows, replace(config, units=units))) for units in range(1, MOST_UNITS + 1))
-        enough = (units for units, cycles in times if cycles <= config.screen_geometry.frame_cycles)
+        enough = (units for units, cycles in times if refreshes(cycles, config) == 1)
         found["units"] = next(enough, MOST_UNITS)
     if "list" not in options and runs_of(rows) > config.list:
         found["list"] = runs_of(rows) + runs_of(rows) % 2

@@ -96,14 +96,22 @@ def runs_of(rows: Iterable[Row]) -> int:
     return sum(len(row.runs) for row in rows)
 
 
+def refreshes(cycles: int, config: Configuration) -> int:
+    """Return the refreshes of the monitor that a frame takes, from StartScreen to the one at which it is shown.
+
+    A frame that is whole in the cycle of a StartScreen is too late for it.
+    """
+    return cycles // config.screen_geometry.frame_cycles + 1
+
+
 def screens_before(scene: Scene, config: Configuration, reflections: int | None = None) -> int:
     """Return the screens from the StartScreen at which a scene goes live to that at which its first frame is shown.
 
-    A frame that is whole in the cycle of a StartScreen is too late for it. Without whole frames there are none.
+    Without whole frames there are none.
     """
     if not config.facts.whole_frames:
         return 0
-    return scene_cycles(scene, config, reflections) // config.screen_geometry.frame_cycles + 1
+    return refreshes(scene_cycles(scene, config, reflections), config)
 
 
 def check_list(rows: Iterable[Row], config: Configuration, path: Path) -> None:

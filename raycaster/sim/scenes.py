@@ -385,13 +385,10 @@ def _frames_per_second(configuration: Configuration, row_cycles: int) -> float:
 
 
 def shown_hz(configuration: Configuration, frame_cycles: int) -> str:
-    """Return the frames per second that a monitor shows if each takes this long, and how that comes from its refresh.
-
-    A frame that is whole in the clock of a refresh is too late for it.
-    """
+    """Return the frames per second that a monitor shows if each takes this long, and its refresh divided by what."""
     screen = configuration.screen_geometry
-    refreshes, hz = frame_cycles // screen.frame_cycles + 1, screen.clock_hz / screen.frame_cycles
-    return f"{hz:.0f}" if refreshes == 1 else f"{hz:.0f}/{refreshes} = {hz / refreshes:.0f}"
+    times, hz = frames.refreshes(frame_cycles, configuration), screen.clock_hz / screen.frame_cycles
+    return f"{hz:.0f}" if times == 1 else f"{hz:.0f}/{times} = {hz / times:.0f}"
 
 
 def check_list(run: Design) -> None:
