@@ -19,7 +19,7 @@ from raycaster.rtl.buffered.engine import GROUP_OVERHEAD
 from raycaster.rtl.common.interfaces import AIM_CYCLES
 from raycaster.rtl.common.widths import exact_slope_bits
 from raycaster.rtl.engine.engine import Engine
-from raycaster.rtl.engines import ENGINES, EXACT, SEED
+from raycaster.rtl.engines import ENGINES, EXACT, SEED, SPAN
 from raycaster.rtl.exact.exact_control import PATTERN_LATENCY, WRITE_AT
 from raycaster.runs.outcomes import table
 
@@ -49,6 +49,7 @@ def offers() -> str:
             for feature, what in FEATURES.items()]  # fmt: skip
     rows.append(["2 pixels per clock", "`PIXELS=2`", *("yes" if one.whole_frames else "" for one in facts)])
     rows.append(["fraction bits, rounding", "`FRACTION_BITS=`", *("yes" if one.divides else "" for one in facts)])
+    rows.append(["most rectangles", "`RECTANGLES=`", *(str(one.rectangles) for one in facts)])
     screens = {place: screen for one in facts for place, screen in one.screens.items()}
     for (name, count), screen in sorted(screens.items(), key=lambda one: (one[0][0] != "vga", one[0])):
         size = f"{screen.horizontal.visible}x{screen.vertical.visible}"
@@ -163,6 +164,7 @@ def facts() -> dict[str, str]:
         "registers": registers(),
         "units": str(default.units),
         "rectangles": str(default.rectangles),
+        "most_rectangles": f"{SEED.facts.rectangles}, or {SPAN.facts.rectangles} with the span engine",
         "rect_cycles": str(SEED.rect_cycles(default)),
         "seed_latency": str(SEED.pass_latency(default)),
         "overhead": str(GROUP_OVERHEAD),

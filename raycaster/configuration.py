@@ -19,8 +19,8 @@ from raycaster.fixed import FixedScene
 from raycaster.screens import COORDINATE_BITS, Screen
 
 WORLD_SIZE = 1 << COORDINATE_BITS
-MOST_RECTANGLES = 32
-"""Number of entries in the largest rectangle table."""
+MOST_RECTANGLES = 128
+"""Number of entries in the largest rectangle table of any engine."""
 
 MOST_REFLECTIONS = 4
 """Largest number of reflections per ray."""
@@ -74,6 +74,7 @@ class Facts:
         usual_build: usual time to convert its default design and to build it with Verilator on two cores, estimated
             from processor time.
         screens: screens that it can fill, by name and rows.
+        rectangles: entries of its largest rectangle table; the default is what every engine holds.
         margin: distance by which a primary ray that hits a rectangle may pass outside its bounds, in world units.
         lacks: options of `FEATURES` that it refuses, each with the reason.
         divides: True if it forms quotients, which have fraction bits and are rounded.
@@ -87,6 +88,7 @@ class Facts:
     marker: str
     usual_build: str
     screens: Mapping[tuple[str, int], Screen]
+    rectangles: int = 32
     margin: int = 0
     lacks: Mapping[str, str] = field(default_factory=dict)
     divides: bool = False
@@ -112,7 +114,12 @@ class Options:
         description="parallel ray units, a divisor of the columns except with span; by default 32 (seed), the fewest "
         "that meet the row budget (exact) or one (span)",
     )
-    rectangles: Whole = Field(12, ge=1, le=MOST_RECTANGLES, description="capacity of the scene memory, in rectangles")
+    rectangles: Whole = Field(
+        12,
+        ge=1,
+        le=MOST_RECTANGLES,
+        description=f"capacity of the scene memory, in rectangles: up to 32, or {MOST_RECTANGLES} (span)",
+    )
     reflections: Whole = Field(
         1,
         ge=0,

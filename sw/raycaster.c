@@ -164,7 +164,8 @@ enum raycaster_error raycaster_probe(struct raycaster *device, volatile uint32_t
     const uint32_t size = READ(device, size);
     device->units = GET(size, SIZE__UNITS);
     device->rows = GET(size, SIZE__ROWS);
-    device->rectangles = GET(size, SIZE__RECTANGLES);
+    const uint32_t entries = GET(READ(device, table), TABLE__RECTANGLES);
+    device->rectangles = entries ? entries : GET(size, SIZE__RECTANGLES);
     const uint32_t engine = READ(device, engine);
     device->reflections = GET(engine, ENGINE__REFLECTIONS);
     device->engine = GET(engine, ENGINE__ENGINE);

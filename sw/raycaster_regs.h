@@ -20,7 +20,6 @@ extern "C" {
 #define RAY_CASTER__VERSION__MINOR_bm 0xffff
 #define RAY_CASTER__VERSION__MINOR_bp 0
 #define RAY_CASTER__VERSION__MINOR_bw 16
-#define RAY_CASTER__VERSION__MINOR_reset 0x0
 #define RAY_CASTER__VERSION__MAJOR_bm 0xffff0000
 #define RAY_CASTER__VERSION__MAJOR_bp 16
 #define RAY_CASTER__VERSION__MAJOR_bw 16
@@ -224,6 +223,11 @@ extern "C" {
 #define RAY_CASTER__LIGHT__ON_bw 1
 #define RAY_CASTER__LIGHT__ON_reset 0x0
 
+// reg - ray_caster::table
+#define RAY_CASTER__TABLE__RECTANGLES_bm 0xff
+#define RAY_CASTER__TABLE__RECTANGLES_bp 0
+#define RAY_CASTER__TABLE__RECTANGLES_bw 8
+
 // reg - ray_caster::rectangle::corner
 #define RAY_CASTER__RECTANGLE__CORNER__X_bm 0x1ff
 #define RAY_CASTER__RECTANGLE__CORNER__X_bp 0
@@ -307,7 +311,7 @@ typedef struct __attribute__ ((__packed__)) {
     uint32_t right;
     uint32_t up;
     uint32_t light;
-    uint8_t RESERVED_3c_3f[0x4];
+    uint32_t table;
     ray_caster__rectangle_t rectangle[12];
 } ray_caster_t;
 

@@ -16,6 +16,7 @@ from raycaster.design.options import CommandParser
 from raycaster.memory_map import c_header
 from raycaster.output import printable, replaced
 from raycaster.registers import compile_registers
+from raycaster.rtl.engines import ENGINES
 
 HEADER = "raycaster_regs.h"
 MEMORY_HEADER = Path("firmware") / "system.h"
@@ -27,7 +28,7 @@ def write_header(rectangles: int, path: Path, lists: bool = False) -> None:
     """Write the C header: a struct of the registers, and each field's mask, position and width.
 
     Args:
-        rectangles: entries of the hardware's table, up to 32.
+        rectangles: entries of the hardware's table.
         path: the file; replaced.
         lists: True for a design that draws frames into lists.
     """
@@ -42,7 +43,7 @@ def write_page(rectangles: int, directory: Path, lists: bool = False) -> Path:
     """Write the web page, which a browser opens without a server.
 
     Args:
-        rectangles: entries of the hardware's table, 1 to 32.
+        rectangles: entries of the hardware's table, 1 or more.
         directory: replaced as a whole.
         lists: True for a design that draws frames into lists.
 
@@ -72,7 +73,8 @@ def command_parser() -> CommandParser:
 def main(argv: Sequence[str] | None = None) -> None:
     """Run the command."""
     arguments = command_parser().parse_args(argv)
-    rectangles = configure(rectangles=arguments.rectangles, allow_underrun=True).rectangles
+    largest = max(ENGINES, key=lambda name: ENGINES[name].facts.rectangles)
+    rectangles = configure(engine=largest, rectangles=arguments.rectangles).rectangles
     page = write_page(rectangles, arguments.output)
     arguments.software.mkdir(parents=True, exist_ok=True)
     header = arguments.software / HEADER

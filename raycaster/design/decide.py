@@ -66,6 +66,11 @@ def decided(options: Options) -> Configuration:
         raise ValueError(
             f"pixels: the {options.engine} engine has 1 per clock, not {options.pixels}; {_instead(options)}"
         )
+    if options.rectangles > engine.facts.rectangles:
+        raise ValueError(
+            f"rectangles: the {options.engine} engine holds at most {engine.facts.rectangles}, not "
+            f"{options.rectangles}; {_instead(options)}"
+        )
     engine.refuse(options)
     # Culling shortens the long slots of a division; a fixed scene leaves out more.
     culls = engine.facts.divides and fixed is None
@@ -95,6 +100,8 @@ def _lacking(engine: Engine, options: Options) -> Iterator[str]:
     yield from (FEATURES[name] for name in engine.facts.lacks if getattr(options, name))
     if options.pixels > 1 and not engine.facts.whole_frames:
         yield f"{options.pixels} pixels per clock"
+    if options.rectangles > engine.facts.rectangles:
+        yield f"{options.rectangles} rectangles"
     screens = [screen for place, screen in engine.facts.screens.items() if _matches(place, options)]
     if not screens:
         yield f"the {options.screen} screen" if options.rows is None else f"{options.rows} rows of {options.screen}"

@@ -11,7 +11,7 @@ from typing import Any
 
 from raycaster.complaints import as_typed
 from raycaster.configuration import FEATURES, Configuration, ConfigurationError
-from raycaster.design.decide import configure
+from raycaster.design.decide import OPTIONS, configure
 from raycaster.errors import UserError
 from raycaster.rtl.engines import ENGINES
 from raycaster.scene import Scene, load_scene, packaged_scenes
@@ -53,15 +53,24 @@ def packaged_for(options: Mapping[str, Any]) -> list[Path]:
     return [path for name, path in packaged_scenes().items() if name not in others]
 
 
+def held_by(options: Mapping[str, Any]) -> int:
+    """Return the number of rectangles that hardware with these options holds; the default if it is no number."""
+    given = str(options.get("rectangles", ""))
+    return int(given) if given.isascii() and given.isdecimal() and len(given) < 9 else OPTIONS["rectangles"].default
+
+
 def left_out(options: Mapping[str, Any]) -> dict[str, list[str]]:
     """Return the names of the packaged scenes that hardware with these options cannot show, by the reason."""
     lacking = {name: f"needs {what}" for name, what in FEATURES.items() if str(options.get(name)) in ("0", "False")}
     if engine := ENGINES.get(str(options.get("engine"))):
         lacking |= {feature: f"needs {FEATURES[feature]}: {reason}" for feature, reason in engine.facts.lacks.items()}
-    found = defaultdict(list)
+    held, found = held_by(options), defaultdict(list)
     for name, path in packaged_scenes().items():
-        needs = load_scene(path).needs
-        if reason := next((reason for feature, reason in lacking.items() if needs[feature]), ""):
+        scene = load_scene(path)
+        reason = next((reason for feature, reason in lacking.items() if scene.needs[feature]), "")
+        if not reason and len(scene.rect) > held:
+            reason = f"has {len(scene.rect)} rectangles: {as_typed('rectangles', len(scene.rect))}"
+        if reason:
             found[reason].append(name)
     return found
 
@@ -69,7 +78,7 @@ def left_out(options: Mapping[str, Any]) -> dict[str, list[str]]:
 def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> Design:
     """Read a scene and choose its hardware; rows, reflections and features that are not given come from the scene.
 
-    If no engine is given, the first one that can show the scene is chosen.
+    If no engine is given, the first one that can show the scene and hold the rectangles is chosen.
 
     Args:
         path: the scene file.
@@ -85,8 +94,9 @@ def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, An
         chosen["rows"] = scene.rows
     chosen.setdefault("reflections", scene.reflections)
     needed = scene.lacks(())
-    able = (name for name, engine in ENGINES.items() if not scene.lacks(engine.facts.features))
-    chosen.setdefault("engine", next(able))
+    able = [name for name, engine in ENGINES.items() if not scene.lacks(engine.facts.features)]
+    large = [name for name in able if held_by(chosen) <= ENGINES[name].facts.rectangles]
+    chosen.setdefault("engine", (large or able)[0])
     try:
         configuration = configure(**dict.fromkeys(needed, True) | chosen)
     except ConfigurationError as error:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.complaints import as_typed
-from raycaster.configuration import FEATURES, MOST_RECTANGLES, Configuration
+from raycaster.configuration import FEATURES, MOST_RECTANGLES, Configuration, Facts
 from raycaster.design.decide import configure
 from raycaster.design.for_scene import Design, design_for
 from raycaster.errors import UserError
@@ -20,7 +20,7 @@ from raycaster.fixed import FixedRectangle, FixedScene
 from raycaster.golden.frames import runs_of, scene_rows
 from raycaster.golden.world import Rectangles
 from raycaster.output import Console, Table
-from raycaster.scene import Rectangle, Scene
+from raycaster.scene import Rectangle, Scene, load_scene
 
 SCOPES = {
     "rects": "rectangles are constants, the camera is live",
@@ -173,7 +173,7 @@ def with_camera(fixed: FixedScene, scene: Scene) -> FixedScene:
 
 
 def general_design(path: Path, options: Mapping[str, Any]) -> Design:
-    """Return the design that shows a scene, and any other: the default one, or one that is large enough.
+    """Return the design that shows a scene, and any other: the default one, or one that is large enough for the scene.
 
     Raises:
         UserError: see `design_for`, except that the row budget is ignored and up to `MOST_RECTANGLES` are allowed.
@@ -182,7 +182,8 @@ def general_design(path: Path, options: Mapping[str, Any]) -> Design:
     for room in ({}, underrun):
         with suppress(UserError):
             return design_for(path, {**options, **room})
-    return design_for(path, {**options, **underrun, "rectangles": MOST_RECTANGLES})
+    held = max(Facts.rectangles, len(load_scene(path).rect))
+    return design_for(path, {**options, **underrun, "rectangles": min(held, MOST_RECTANGLES)})
 
 
 def _omissions(scene: Scene, reasons: Sequence[Mapping[int, str]], *, with_shadows: bool) -> list[tuple[str, str]]:

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.configuration import WORLD_SIZE, Configuration
-from raycaster.design.for_scene import Design, design_for
+from raycaster.design.for_scene import Design, design_for, held_by
 from raycaster.play.system import play_options
 from raycaster.program import basis_fields, light_fields, scene_words
 from raycaster.registers import register_map
 from raycaster.rtl.engines import ENGINES
-from raycaster.scene import Camera, Light, Scene
+from raycaster.scene import Camera, Light, Scene, load_scene
 
 STEP = 3.0
 """World units per frame that a held button moves the camera."""
@@ -36,7 +36,7 @@ TURNS = ("turn left", "turn right", "look up", "look down")
 
 
 def design_to_walk(path: Path, options: Mapping[str, Any]) -> Design:
-    """Choose the hardware for a walk through a scene: by default the fastest, with a camera that turns if it can.
+    """Choose the hardware for a walk through a scene: by default the fastest that holds it, with a camera that turns.
 
     Args:
         path: the scene file.
@@ -47,7 +47,11 @@ def design_to_walk(path: Path, options: Mapping[str, Any]) -> Design:
     """
     chosen = play_options(options)
     engine = ENGINES.get(chosen["engine"])
-    return design_for(path, options, chosen | ({"turn": True} if engine and "turn" in engine.facts.features else {}))
+    if engine and "turn" in engine.facts.features:
+        chosen = {"turn": True} | chosen
+    if engine and held_by(options) < (count := len(load_scene(path).rect)) <= engine.facts.rectangles:
+        chosen = {"rectangles": count} | chosen
+    return design_for(path, options, chosen)
 
 
 class Walker:

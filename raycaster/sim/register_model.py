@@ -257,9 +257,10 @@ class Agent:
         engine = {"engine": config.facts.code, "nearest": int(config.rounding == "nearest")}
         constants = {
             "id": {"magic": int.from_bytes(b"RAYC", "big")},
-            "version": {field: value.reset for field, value in registers["version"].fields.items()},
+            "version": {"major": 1, "minor": int(config.rectangles > 63)},
             "engine": engine | {name: int(getattr(config, name)) for name in named},
-            "size": {"units": config.units, "rectangles": config.rectangles, "rows": config.rows},
+            "size": {"units": config.units, "rectangles": min(config.rectangles, 63), "rows": config.rows},
+            **({"table": {"rectangles": config.rectangles}} if config.rectangles > 63 else {}),
         }
         self._constants = {name: registers[name].pack(**fields) for name, fields in constants.items()}
         self.reset()

@@ -2,6 +2,8 @@
 // Golden model in C++: draws the scene in the registers from the image contract, with integers only, and shares
 // nothing with the hardware or its Verilog. The page runs it alongside the design and compares the pictures.
 //
+// MOST_RECTANGLES: entries of the largest rectangle table.
+//
 // The caller writes the live words to golden_words(), each at its register's word address, and calls golden_draw;
 // golden_picture() then holds red, green and blue of each pixel. golden_ray explains one pixel of the last drawing in
 // golden_bounces(): a struct Bounce, nine 64-bit numbers, for the camera's ray and for each reflection.
@@ -27,7 +29,6 @@
 namespace {
 
 constexpr int MOST_PIXELS = 1280 * 960;
-constexpr int MOST_RECTANGLES = 32;
 constexpr int MOST_BOUNCES = 1 << RAY_CASTER__CONTROL__REFLECTIONS_bw;
 constexpr int LIT = -1, DARK_SIDE = -2; // values of Bounce::shadow
 constexpr int VIEW_DISTANCE = 100; // slope along x of a primary ray at scale 1

@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import raycaster.sw
-from raycaster.configuration import Configuration
+from raycaster.configuration import MOST_RECTANGLES, Configuration
 from raycaster.design.options import BUILD
 from raycaster.errors import UserError, not_installed
 from raycaster.play.machine import MACHINE as MACHINE_HEADER
@@ -34,7 +34,7 @@ REPLACED = ("frame_list", "video_generator")
 SOFTWARE = Path(raycaster.sw.__path__[0])
 DRIVER = SOFTWARE / "raycaster.c"
 DRIVER_HEADERS = tuple(SOFTWARE / name for name in ("raycaster.h", "raycaster_regs.h"))
-GOLDEN_FLAGS = ("-std=c++17", f"-I{SOFTWARE}", "-Wall", "-Wextra", "-Werror")
+GOLDEN_FLAGS = ("-std=c++17", f"-DMOST_RECTANGLES={MOST_RECTANGLES}", f"-I{SOFTWARE}", "-Wall", "-Wextra", "-Werror")
 
 WASI = "wasm32-wasi"
 """Target with the C and C++ libraries, without exceptions; their system calls are imported from the page."""

@@ -28,9 +28,27 @@ def engine_word(config: Configuration) -> int:
     )
 
 
+def has_large_table(config: Configuration) -> bool:
+    """Return True if the size register is too small for the number of rectangles, which is in the register `table`."""
+    size = register_map(*config.map)["size"].fields["rectangles"]
+    return config.table >= 1 << size.width
+
+
+def version_word(config: Configuration) -> int:
+    """Return the value of a design's version register. Only a large table is an addition to version 1.0."""
+    return register_map(*config.map)["version"].reset | int(has_large_table(config))
+
+
 def size_word(config: Configuration) -> int:
     """Return the value of a design's size register."""
-    return register_map(*config.map)["size"].pack(units=config.units, rectangles=config.table, rows=config.rows)
+    size = register_map(*config.map)["size"]
+    most = (1 << size.fields["rectangles"].width) - 1
+    return size.pack(units=config.units, rectangles=min(config.table, most), rows=config.rows)
+
+
+def table_word(config: Configuration) -> int:
+    """Return the value of a design's table register."""
+    return register_map(*config.map)["table"].pack(rectangles=config.table if has_large_table(config) else 0)
 
 
 @block
@@ -83,7 +101,7 @@ def avalon_interface(
         irq_enable_address, irq_pending_address, background_address, camera_address,
     ) = (tied(registers[name].address, len(bus.address)) for name in in_order)  # fmt: skip
     id_value = tied(registers["id"].reset, WORD_BITS)
-    version_value = tied(registers["version"].reset, WORD_BITS)
+    version_value = tied(version_word(config), WORD_BITS)
     engine_value, size_value = tied(engine_word(config), WORD_BITS), tied(size_word(config), WORD_BITS)
     unkept = control.fields["commit"].mask | (0 if live else control.fields["reflections"].mask)
     control_bits = tied(control.implemented & ~unkept, WORD_BITS)
@@ -103,6 +121,22 @@ def avalon_interface(
     irq_enable, irq_pending = bit(), bit()
     take_scene = progress.take_scene if whole_frames else progress.start_screen
     underrun = tied(0, 1) if whole_frames else progress.underrun
+    elsewhere = rect_readback
+    if has_large_table(config):
+        elsewhere, at_table = unsigned(WORD_BITS), bit()
+        table_address, table_value = (
+            tied(registers["table"].address, len(bus.address)), tied(table_word(config), WORD_BITS),
+        )  # fmt: skip
+
+        @always_comb
+        def find_table():
+            at_table.next = bus.address == table_address
+
+        @always_comb
+        def read_table():
+            elsewhere.next = rect_readback
+            if at_table:
+                elsewhere.next = table_value
 
     control_memory = scene_word(
         clk, reset, bus, select_control, implemented=control_bits, shadow=control_word, live=live_control
@@ -214,7 +248,7 @@ def avalon_interface(
 
     @always_comb
     def read():
-        read_data.next = rect_readback
+        read_data.next = elsewhere
         if bus.address == id_address:
             read_data.next = id_value
         elif bus.address == version_address:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from raycaster.configuration import Configuration, Facts, Options
+from raycaster.configuration import MOST_RECTANGLES, Configuration, Facts, Options
 from raycaster.rtl.engine.engine import Engine, check_pairs
 from raycaster.rtl.span.span_renderer import span_renderer
 from raycaster.screens import LIST_SCREENS
@@ -57,6 +57,6 @@ class Span(Engine):
 SPAN = Span(
     Facts(
         name="span", code=3, colour="#CC79A7", marker="D", usual_build="5 s", screens=LIST_SCREENS,
-        whole_frames=True,
+        rectangles=MOST_RECTANGLES, whole_frames=True,
     )
 )  # fmt: skip

@@ -12,6 +12,9 @@ from raycaster.rtl.common.widths import AXIS_BITS, column_bits, eye_bits, index_
 from raycaster.rtl.span.mirror_side import mirror_side
 from raycaster.rtl.span.records import AHEAD, BEYOND, NUMBER_BITS, U_HIGH, U_LOW, V_HIGH, V_LOW
 
+MOST_IN_A_CHAIN = 32
+"""Most rectangles among which a chain of choices finds the next one; with more, the chain is too long."""
+
 
 @block
 def half_lines(
@@ -126,15 +129,41 @@ def half_lines(
         if start:
             candidates.next = rects.usable
 
-    @always_comb
-    def choose_rectangle():
-        lowest.next = 0
-        others.next = candidates
-        for i in range(count - 1, -1, -1):
-            if candidates[i]:
-                lowest.next = i
-                others.next = candidates
-                others.next[i] = 0
+    if count <= MOST_IN_A_CHAIN:
+
+        @always_comb
+        def choose_rectangle():
+            lowest.next = 0
+            others.next = candidates
+            for i in range(count - 1, -1, -1):
+                if candidates[i]:
+                    lowest.next = i
+                    others.next = candidates
+                    others.next[i] = 0
+
+    else:
+        below, first = unsigned(count), unsigned(count)
+
+        # Subtracting 1 changes the bits up to the lowest one that is set.
+        @always_comb
+        def count_down():
+            below.next = (candidates - 1) % (1 << count)
+
+        @always_comb
+        def drop_first():
+            others.next = candidates & below
+
+        @always_comb
+        def find_first():
+            first.next = candidates & ~below
+
+        @always_comb
+        def choose_rectangle():
+            lowest.next = 0
+            for i in range(count):
+                for place in range(index_width):
+                    if first[i] and ((i >> place) % 2 == 1):
+                        lowest.next[place] = True
 
     @always_comb
     def see_fetch():

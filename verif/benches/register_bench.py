@@ -18,7 +18,9 @@ from raycaster.sim.register_model import EVERY_LANE, SceneFollower
 from raycaster.verif.expected import check_cycles
 from raycaster.verif.seeds import seed
 
-NOT_OF_THE_SCENE = ("id", "version", "engine", "size", "control", "status", "cycles", "irq_enable", "irq_pending")
+NOT_OF_THE_SCENE = (
+    "id", "version", "engine", "size", "table", "control", "status", "cycles", "irq_enable", "irq_pending",
+)  # fmt: skip
 
 
 @cocotb.test()

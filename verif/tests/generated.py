@@ -24,6 +24,7 @@ def examples(count: int) -> Callable:
 def engine_options(facts: Facts) -> dict[str, st.SearchStrategy]:
     """Return options of an engine in addition to those of every engine."""
     found: dict[str, st.SearchStrategy] = {"screen": st.sampled_from(sorted({name for name, _ in facts.screens}))}
+    found["rectangles"] = st.integers(1, facts.rectangles)
     found |= {look: st.booleans() for look in ("turn", "light") if look in facts.features}
     if facts.whole_frames:
         return found | {"scale": st.sampled_from([1, 2, 4])}
@@ -38,7 +39,6 @@ def engine_options(facts: Facts) -> dict[str, st.SearchStrategy]:
 
 
 ANY_OPTIONS = {
-    "rectangles": st.integers(1, 32),
     "reflections": st.integers(0, 2),
     "rows": st.sampled_from([240, 200, 180, 48]),
     "colour_bits": st.integers(1, 8),
@@ -47,7 +47,7 @@ ANY_OPTIONS = {
     "bus": st.sampled_from(list(BUSES)),
 }
 ODD = {
-    "engine": "none", "units": 7, "rectangles": 33, "reflections": -1, "rows": 100, "scale": 6, "fraction_bits": 9,
+    "engine": "none", "units": 0, "rectangles": 129, "reflections": -1, "rows": 100, "scale": 6, "fraction_bits": 9,
     "rounding": "up", "divider_bits": 4, "colour_bits": "x", "screen": "cinema", "culling": 2, "colour": 8,
     "bus": "pci",
 }  # fmt: skip

@@ -15,7 +15,7 @@ from conftest import SMALL_SCENE, plant, run_tool
 from tcl import tcl_calls
 
 from raycaster.buses import BRIDGED, BUSES, OWN
-from raycaster.configuration import FEATURES, Configuration
+from raycaster.configuration import FEATURES, MOST_RECTANGLES, Configuration
 from raycaster.convert import verilog
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM
 from raycaster.convert.register_views import HEADER
@@ -42,7 +42,7 @@ CONFIGURATIONS = [
     configure(engine="exact", screen="tiny", reflections=2, turn=True, materials=True, patterns=True),
     configure(engine="exact", screen="tiny", rectangles=2, light=True),
     configure(engine="exact", screen="tiny", reflections=2, rectangles=2, **dict.fromkeys(EXACT.facts.features, True)),
-    configure(engine="span", rows=180),
+    configure(engine="span", rows=180, rectangles=MOST_RECTANGLES),
     configure(engine="span", screen="tiny", reflections=2, rectangles=3, scale=1),
     configure(engine="span", reflections=0, rectangles=1, colour_bits=4),
     configure(engine="span", screen="tiny", reflections=4, rectangles=2, units=2),

@@ -347,9 +347,12 @@ def stiff_table(random: np.random.Generator, count: int) -> tuple[np.ndarray, np
     return corners, camera
 
 
-def any_frame(random: np.random.Generator, config: Configuration) -> Frame:
-    """Return a frame that a design can draw: a random, a cornered or a stiff world, with the looks of the design."""
-    count, kind = config.rectangles, int(random.integers(3))
+def any_frame(random: np.random.Generator, config: Configuration, count: int | None = None) -> Frame:
+    """Return a frame that a design can draw: a random, a cornered or a stiff world, with the looks of the design.
+
+    It has as many rectangles as the design holds, or as given.
+    """
+    count, kind = count or config.rectangles, int(random.integers(3))
     if kind == 0:
         table = random_rectangles(random, count, closed=None if count > len(ROOM) else False)
         camera = random_camera(random, table)

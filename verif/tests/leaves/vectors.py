@@ -25,7 +25,7 @@ from raycaster.verif.seeds import repeat
 PORTS: dict[str, int | Callable[[Any], Any]] = {
     "reset": lambda _: reset_signal(),
     "access": lambda _: interfaces.Access(),
-    "bus": lambda config: interfaces.SceneBus(address_bits(config.rectangles)),
+    "bus": lambda config: interfaces.SceneBus(address_bits(*config.map)),
     "camera": records.Camera,
     "column_base": lambda config: unsigned(widths.unit_bits(config)),
     "data": widths.WORD_BITS,

@@ -17,12 +17,14 @@ from raycaster.sim.register_model import Agent
     sized(32, reflections=2, units=320, rows=200),
     sized(2, engine="exact", turn=True, patterns=True),
     sized(2, engine="exact", materials=True),
+    sized(100, engine="span"),
 )
 def test_avalon_interface(config, leaf_of, random):
-    width = address_bits(config.rectangles)
+    width = address_bits(*config.map)
     words = dict.fromkeys(("camera_readback", "rect_readback"), WORD_BITS)
     leaf, agent = leaf_of(avalon_interface, config, avs_s0=lambda: AvalonPort(width), **words), Agent(config)
-    registers = [register.address for name, register in agent.registers.items() if "rectangle" not in name]
+    registers = [one.address for name, one in agent.registers.items() if not name.startswith(("rectangle", "frames"))]
+    elsewhere = agent.registers["frames.cycles"].address if config.facts.whole_frames else 1 << width
     control = agent.registers["control"]
     row, group, committing = 0, 0, False
     for cycle in range(7500):
@@ -33,7 +35,7 @@ def test_avalon_interface(config, leaf_of, random):
             group = int(random.integers(1 << int(random.integers(1, CYCLE_BITS + 1))))
         # After 3000 cycles: enough frames without a reset to change the counter's upper bits.
         busy_bus = cycle < 3000
-        address = int(random.choice([*registers, control.address, int(random.integers(1 << width))]))
+        address = int(random.choice([*registers, control.address, int(random.integers(elsewhere))]))
         # Ones and zeros in the write-1-to-clear bits, and often a commit.
         data = int(random.choice([0, 1, 2, 4, 6, 0x303, 0x102, EVERY_BIT, random.integers(1 << WORD_BITS)]))
         transfer = random.choice(["read", "write", "none"], p=[0.4, 0.4, 0.2])
@@ -56,6 +58,9 @@ def test_avalon_interface(config, leaf_of, random):
             "progress_row_cycles": row,
             "progress_group_cycles": group,
         }
+        if config.facts.whole_frames:
+            inputs["progress_take_scene"] = int(inputs["progress_start_screen"] and random.random() < 0.7)
+            inputs = {name: value for name, value in inputs.items() if name in leaf.given}
         waits = cycle and leaf.stimulus[-1]["reset"]
         leaf.case(inputs, agent.outputs(inputs) | {"avs_s0_waitrequest": waits})
         agent.clock(inputs)

@@ -74,12 +74,13 @@ def fill_places(random: np.random.Generator, table: Table) -> list[dict[str, int
     return [{**idle, "reset": 1}, *writes, idle, commit, *writes, idle, commit, go_live, *writes, idle, idle, idle]
 
 
-@pytest.mark.slow_sets("2", "3-", "32")
+@pytest.mark.slow_sets("2", "3-", "32", "128")
 @pytest.mark.parametrize(
     ("rectangles", "options"),
     [
         *((rectangles, {"engine": engine}) for rectangles in (1, 2, 3, 12, 32) for engine in ("seed", "exact")),
-        (3, {"engine": "exact", "materials": True}), (2, {"engine": "exact", "patterns": True}),
+        (128, {"engine": "span"}), (3, {"engine": "exact", "materials": True}),
+        (2, {"engine": "exact", "patterns": True}),
         (3, {"engine": "seed", "materials": True, "patterns": True}),
     ],
     ids=lambda value: label(value) if isinstance(value, dict) else str(value),
@@ -104,6 +105,8 @@ def test_rect_mem(rectangles, options, leaf_of, random):
         usable = sum(int(flag) << index for index, flag in enumerate(live.visible))
         wanted = {"readback": word.shadow if word else 0, "bad_rectangle": bad, "rects_usable": usable}
         leaf.expected[cycle] = wanted | presented
+        if live.visible.any() and random.random() < 0.5:
+            inputs["rects_index"] = int(random.choice(np.flatnonzero(live.visible)))
         if inputs["rects_fetch"]:
             index = inputs["rects_index"]
             presented = sorted_rect(live, index, "rects_rect", config) if live.visible[index] else {}

@@ -100,7 +100,11 @@ def test_set_up(options, leaf_of, random):
     assert leaf.few or len(kinds) == (6 if config.reflections else 3)
 
 
-@pytest.mark.parametrize("options", [*DESIGNS[:3], {"screen": "tiny", "reflections": 1, "light": True}], ids=str)
+@pytest.mark.parametrize(
+    "options",
+    [{"screen": "tiny", "rectangles": 100}, *DESIGNS[:3], {"screen": "tiny", "reflections": 1, "light": True}],
+    ids=str,
+)
 def test_half_lines(options, leaf_of, random):
     """The lines of one rectangle have the values of the contract at the ends of the chain, and come in its order."""
     config = span_config(**options)

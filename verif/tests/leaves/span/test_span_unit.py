@@ -13,9 +13,10 @@ from conftest import plant
 from span_vectors import Frame, any_frame, frame_bench, frame_inputs, scene_frame, span_config
 from vectors import config_id
 
-from raycaster.configuration import FEATURES, Configuration
+from raycaster.configuration import FEATURES, MOST_RECTANGLES, Configuration
 from raycaster.golden.picture import describe_difference
 from raycaster.golden.spans import Row, picture_of
+from raycaster.golden.world import Rectangles
 from raycaster.rtl.common.interfaces import Run
 from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import index_bits
@@ -116,6 +117,28 @@ def test_span_unit(config, leaf_of, random):
     leaf = unit_bench(leaf_of, config)
     leaf.screen = config.screen_geometry
     check_frames(leaf, [any_frame(random, config) for _ in range(QUICK if leaf.few else 8)])
+
+
+@pytest.mark.parametrize("reflections", [0, 1])
+def test_a_hundred_rectangles(reflections, leaf_of, random):
+    """Worlds of 100 rectangles in the largest table, of which some are at its end."""
+    config = span_config(screen="tiny", rectangles=MOST_RECTANGLES, reflections=reflections)
+    leaf = unit_bench(leaf_of, config)
+    leaf.screen = config.screen_geometry
+    frames = [any_frame(random, config, 100) for _ in range(1 if leaf.few else 6)]
+    check_frames(
+        leaf, [replace(frame, table=spread(random, frame.table)) for frame in frames], most=2 if leaf.few else None
+    )
+
+
+def spread(random: np.random.Generator, table: Rectangles) -> Rectangles:
+    """Return a table of `MOST_RECTANGLES` that has these rectangles in any places, among disabled ones."""
+    places = random.permutation(MOST_RECTANGLES) % len(table)
+    enabled = np.zeros(MOST_RECTANGLES, dtype=bool)
+    enabled[np.unique(places, return_index=True)[1]] = True
+    parts = (table.corners, table.colours, table.enabled, table.mirrors, table.kinds, table.cells, table.colours_2)
+    corners, colours, seen, *looks = (part[places] for part in parts)
+    return Rectangles(corners, colours, enabled & seen, *looks)
 
 
 WIDEST = span_config(rows=180, scale=6, rectangles=12, reflections=4, **dict.fromkeys(FEATURES, True))
