@@ -17,11 +17,8 @@ from raycaster.scene import Scene
 FIRST_START = 4
 """Cycles from the StartScreen at which a frame begins to its first row's start, if the units are ready."""
 
-AHEAD = 4
-"""Runs that have left a queue's memory and have not been collected."""
-
-OFFERED = 3
-"""Cycles from the fetch of a run from a queue's memory to that in which it may be collected."""
+BANK = 2048
+"""Runs of a bank of a queue's memory; up to four banks take a cycle more than one."""
 
 
 def frame_cycles(rows: Iterable[Row], columns: int, units: int = 1, places: int = 0, first: int = FIRST_START) -> int:
@@ -38,6 +35,8 @@ def frame_cycles(rows: Iterable[Row], columns: int, units: int = 1, places: int 
         places: runs that the queue of a unit holds; not used with one unit.
         first: cycles from StartScreen to the first row's start.
     """
+    # Cycles from the fetch of a run to that in which it may be collected, and runs that have left the memory till then.
+    offered, ahead = (3, 4) if places <= BANK else (4, 8)
     free = [first] * units
     fetched: list[list[int]] = [[] for _ in range(units)]
     collected: list[list[int]] = [[] for _ in range(units)]
@@ -56,9 +55,9 @@ def frame_cycles(rows: Iterable[Row], columns: int, units: int = 1, places: int 
             fetch = start + offset + 1
             if fetches:
                 fetch = max(fetch, fetches[-1] + 1)
-            if len(takes) >= AHEAD:
-                fetch = max(fetch, takes[-AHEAD] + 1)
-            last = max(last + 1, fetch + OFFERED)
+            if len(takes) >= ahead:
+                fetch = max(fetch, takes[-ahead] + 1)
+            last = max(last + 1, fetch + offered)
             fetches.append(fetch)
             takes.append(last)
     return last + 1

@@ -68,10 +68,12 @@ def signed(width: int) -> SignalType:
 
 
 class Unset(list):
-    """Words of a memory that is unknown at power-up, as a large block RAM is: Verilog gives them no initial values.
+    """Words of a large block RAM: unknown at power-up, so Verilog gives them no initial values.
 
     In MyHDL a word is made when a process first reads or writes it, and begins with 0, so nothing may depend on a word
-    before it is written. Only clocked processes may read it, as no process can wait for a word that is not made yet.
+    before it is written. Nor may anything depend on a word that is read in the cycle in which it is written, so that
+    tools need not see to that. Only clocked processes may read it, as no process can wait for a word that is not made
+    yet.
     """
 
     def __init__(self, places: int, width: int):

@@ -16,13 +16,17 @@ from raycaster.hdl.expressions import Expressions, Range
 from raycaster.hdl.internals import Constant, EnumItemType, SignalType, Statements, operands_of, states_by_name
 from raycaster.hdl.port_comments import Comments
 from raycaster.hdl.records import Joined
-from raycaster.hdl.signals import Tied
+from raycaster.hdl.signals import Tied, Unset
 
 LINE_LENGTH = 120
 WHOLE_WORDS: Any = {"break_long_words": False, "break_on_hyphens": False}
 
 POWER_UP = "// Values at power-up."
 """Comment above the initial values of registers and of memories that are written."""
+
+UNCHECKED = '(* ramstyle = "no_rw_check" *)\n'
+"""Attribute of a memory, for Yosys and Quartus: a word that is read in the cycle in which it is written is don't care.
+Otherwise they add registers and multiplexers that deliver the word from before."""
 
 
 def module_text(contents: Contents, name: str, header: str, vocabulary: Mapping[str, Any]) -> str:
@@ -108,6 +112,8 @@ def _declarations(contents: Contents) -> Iterator[str]:
         kinds = [contents.driven.get(id(one)) for one in [memory, *memory]]
         if name in contents.passed and not contents.passed[name]:
             kinds = ["wire"]
+        if isinstance(memory, Unset):
+            yield UNCHECKED
         yield f"{next(filter(None, kinds), 'reg')} {_shape(memory[0])}{name} [0:{len(memory) - 1}];\n"
     for name, (known, _) in contents.variables.items():
         yield f"{internals.declaration('reg', known)}{name};\n"

@@ -8,19 +8,20 @@ from raycaster.rtl.span.pair_player import pair_player
 from raycaster.rtl.span.pixel_player import pixel_player
 from raycaster.rtl.span.read_ahead import read_ahead
 from raycaster.rtl.span.row_place import row_place
-from raycaster.rtl.span.run_memory import run_memory
+from raycaster.rtl.span.run_memory import BANK_PLACES, read_latency, run_memory
 
 
 @block
 def list_player(
-    clk, reset, scan, upper, view_run, write, write_place, written, shown, pixels: int, entries: int
+    clk, reset, scan, upper, view_run, write, write_place, written, shown, pixels: int, entries: int,
+    bank: int = BANK_PLACES,
 ):  # fmt: skip
     """Keep both lists, and play the one in view.
 
     With two pixels per clock, even and odd entries have memories of their own, since two runs of one pixel each may be
     needed in every clock. Each memory is read ahead, so that no comparison with an entry decides about an address.
 
-    A line must begin at least ten cycles before its first pixel.
+    A line must begin at least eight cycles and the latency of a `run_memory` before its first pixel.
 
     Args:
         clk: the clock.
@@ -35,6 +36,7 @@ def list_player(
         shown: unsigned output; the pixels of a clock, each as in `ListEntry`, the left one in the lowest bits.
         pixels: pixels per clock, 1 or 2.
         entries: entries of a list, an even number.
+        bank: places of a bank of a memory.
     """
     places = 2 * entries // pixels
     place_bits = bits_for(places)
@@ -54,7 +56,7 @@ def list_player(
     banks = [
         run_memory(
             clk, write=writes[i], write_place=bank_place, written=written, read_place=reads[i], shown=fetched[i],
-            places=places,
+            places=places, bank=bank,
         )
         for i in range(pixels)
     ]  # fmt: skip
@@ -62,6 +64,7 @@ def list_player(
         read_ahead(
             clk, restart=restart, first=firsts[i], more=tied(1, 1), shown=fetched[i], take=takes[i],
             fetch=unconnected(1), read_place=reads[i], offered=unconnected(1), head=heads[i], places=places,
+            latency=read_latency(places, bank),
         )
         for i in range(pixels)
     ]  # fmt: skip

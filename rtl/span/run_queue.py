@@ -5,11 +5,13 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.hdl.signals import bit, bits_for, tied, unsigned
 from raycaster.rtl.span.read_ahead import read_ahead
-from raycaster.rtl.span.run_memory import run_memory
+from raycaster.rtl.span.run_memory import BANK_PLACES, read_latency, run_memory
 
 
 @block
-def run_queue(clk, reset, valid, run, take, ready, room, offered, head, columns: int, places: int):
+def run_queue(
+    clk, reset, valid, run, take, ready, room, offered, head, columns: int, places: int, bank: int = BANK_PLACES
+):  # fmt: skip
     """Queue the runs of a unit, so that it draws its next row while a row above is still being drawn by another unit.
 
     A unit that starts a row only if there is room never waits for ready, so a row takes the cycles that it takes alone.
@@ -22,10 +24,12 @@ def run_queue(clk, reset, valid, run, take, ready, room, offered, head, columns:
         take: strobe; head is replaced by the next run. Only while offered.
         ready: output flag; the queue is not full.
         room: output flag; there is room for all runs that a row can have.
-        offered: output flag; head is a run, at the earliest in the fourth cycle after it was taken from the unit.
+        offered: output flag; head is a run, at the earliest two cycles and `read_latency` after it was taken from the
+            unit.
         head: `ListEntry`; output, the oldest run, valid while offered and constant until take.
         columns: columns of a row, its most runs.
         places: runs that fit, besides those that are read ahead; at least columns.
+        bank: places of a bank of the memory.
     """
     last, most = places - 1, places - columns
 
@@ -35,11 +39,13 @@ def run_queue(clk, reset, valid, run, take, ready, room, offered, head, columns:
     shown = run.twin()
 
     memory = run_memory(
-        clk, write=put, write_place=write_place, written=run, read_place=read_place, shown=shown, places=places
+        clk, write=put, write_place=write_place, written=run, read_place=read_place, shown=shown, places=places,
+        bank=bank,
     )  # fmt: skip
     reader = read_ahead(
         clk, restart=reset, first=tied(0, write_place), more=more, shown=shown, take=take, fetch=fetch,
         read_place=read_place, offered=offered, head=head, places=places,
+        latency=read_latency(places, bank),
     )  # fmt: skip
 
     @always_comb

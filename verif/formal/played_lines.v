@@ -7,15 +7,15 @@
 // Assumed about the monitor: columns come at any pace, in lines of COLUMNS columns; there are BLANKING cycles between
 // two lines; strobes come in the first three of these, and start_row not in those of start_screen. Assumed about the
 // frames, as whole_frames proves: the list in view changes only in the cycle after start_screen, and is not written;
-// and no row has more entries than are left in the list.
+// and no row has more entries than are left in the list. The memories are one bank each; leaf tests have several.
 //
 // [proof]
 // claim = "each pixel of each line is that of its run, which is found by the ends of the row's runs in the list"
 // modules = [
 //   "list_player", "row_place", "pixel_player if PIXELS == 1", "pair_player if PIXELS == 2", "read_ahead",
-//   "run_memory",
+//   "run_memory", "run_bank",
 // ]
-// as_registers = ["read_ahead", "run_memory"]
+// as_registers = ["read_ahead", "run_bank"]
 // induction = 1
 // quick = [
 //   "1 pixel: alone=list UNITS=1 ROWS=2 COLUMNS=3 ENTRIES=2 PIXELS=1",
@@ -37,13 +37,13 @@ wire next_column = scan_next_column;
 // The entries of both lists.
 wire [4*ONE-1:0] bank_0, bank_1;
 generate if (PIXELS == 2) begin: two_banks
-    assign bank_0 = {\dut.run_memory_0_i.memory[3] , \dut.run_memory_0_i.memory[2] ,
-        \dut.run_memory_0_i.memory[1] , \dut.run_memory_0_i.memory[0] };
-    assign bank_1 = {\dut.run_memory_1_i.memory[3] , \dut.run_memory_1_i.memory[2] ,
-        \dut.run_memory_1_i.memory[1] , \dut.run_memory_1_i.memory[0] };
+    assign bank_0 = {\dut.run_memory_0_i.run_bank_i.memory[3] , \dut.run_memory_0_i.run_bank_i.memory[2] ,
+        \dut.run_memory_0_i.run_bank_i.memory[1] , \dut.run_memory_0_i.run_bank_i.memory[0] };
+    assign bank_1 = {\dut.run_memory_1_i.run_bank_i.memory[3] , \dut.run_memory_1_i.run_bank_i.memory[2] ,
+        \dut.run_memory_1_i.run_bank_i.memory[1] , \dut.run_memory_1_i.run_bank_i.memory[0] };
 end else begin: one_bank
-    assign bank_0 = {\dut.run_memory_i.memory[3] , \dut.run_memory_i.memory[2] ,
-        \dut.run_memory_i.memory[1] , \dut.run_memory_i.memory[0] };
+    assign bank_0 = {\dut.run_memory_i.run_bank_i.memory[3] , \dut.run_memory_i.run_bank_i.memory[2] ,
+        \dut.run_memory_i.run_bank_i.memory[1] , \dut.run_memory_i.run_bank_i.memory[0] };
     assign bank_1 = 0;
 end endgenerate
 function [ONE-1:0] of(input [4*ONE-1:0] even, input [4*ONE-1:0] odd, input [4:0] number);
@@ -135,27 +135,30 @@ end
 wire [3*PIXELS-1:0] ahead, filled;
 wire [2*PIXELS-1:0] head_slot, put_slot, on_the_way, read_place;
 wire [4*ONE*PIXELS-1:0] slots;
+wire [PIXELS-1:0] bank_reads;
 wire [2*ONE*PIXELS-1:0] arriving;  // the run that comes from the memory, and above it the one after it
 generate if (PIXELS == 2) begin: two_readers
+    assign bank_reads = {dut.run_memory_1_i.run_bank_i.reads, dut.run_memory_0_i.run_bank_i.reads};
     assign ahead[3*0 +: 3] = dut.read_ahead_0_i.taken_slots, filled[3*0 +: 3] = dut.read_ahead_0_i.filled_slots;
     assign head_slot[2*0 +: 2] = dut.read_ahead_0_i.head_slot, put_slot[2*0 +: 2] = dut.read_ahead_0_i.put_slot;
     assign on_the_way[2*0 +: 2] = dut.read_ahead_0_i.on_the_way, read_place[2*0 +: 2] = dut.read_ahead_0_i.read_place;
     assign slots[4*ONE*0 +: 4*ONE] = {\dut.read_ahead_0_i.slots[3] , \dut.read_ahead_0_i.slots[2] ,
         \dut.read_ahead_0_i.slots[1] , \dut.read_ahead_0_i.slots[0] };
-    assign arriving[2*ONE*0 +: 2*ONE] = {dut.run_memory_0_i.fetched, dut.run_memory_0_i.shown_word};
+    assign arriving[2*ONE*0 +: 2*ONE] = {dut.run_memory_0_i.run_bank_i.fetched, dut.run_memory_0_i.shown_word};
     assign ahead[3*1 +: 3] = dut.read_ahead_1_i.taken_slots, filled[3*1 +: 3] = dut.read_ahead_1_i.filled_slots;
     assign head_slot[2*1 +: 2] = dut.read_ahead_1_i.head_slot, put_slot[2*1 +: 2] = dut.read_ahead_1_i.put_slot;
     assign on_the_way[2*1 +: 2] = dut.read_ahead_1_i.on_the_way, read_place[2*1 +: 2] = dut.read_ahead_1_i.read_place;
     assign slots[4*ONE*1 +: 4*ONE] = {\dut.read_ahead_1_i.slots[3] , \dut.read_ahead_1_i.slots[2] ,
         \dut.read_ahead_1_i.slots[1] , \dut.read_ahead_1_i.slots[0] };
-    assign arriving[2*ONE*1 +: 2*ONE] = {dut.run_memory_1_i.fetched, dut.run_memory_1_i.shown_word};
+    assign arriving[2*ONE*1 +: 2*ONE] = {dut.run_memory_1_i.run_bank_i.fetched, dut.run_memory_1_i.shown_word};
 end else begin: one_reader
+    assign bank_reads = dut.run_memory_i.run_bank_i.reads;
     assign ahead[3*0 +: 3] = dut.read_ahead_i.taken_slots, filled[3*0 +: 3] = dut.read_ahead_i.filled_slots;
     assign head_slot[2*0 +: 2] = dut.read_ahead_i.head_slot, put_slot[2*0 +: 2] = dut.read_ahead_i.put_slot;
     assign on_the_way[2*0 +: 2] = dut.read_ahead_i.on_the_way, read_place[2*0 +: 2] = dut.read_ahead_i.read_place;
     assign slots[4*ONE*0 +: 4*ONE] = {\dut.read_ahead_i.slots[3] , \dut.read_ahead_i.slots[2] ,
         \dut.read_ahead_i.slots[1] , \dut.read_ahead_i.slots[0] };
-    assign arriving[2*ONE*0 +: 2*ONE] = {dut.run_memory_i.fetched, dut.run_memory_i.shown_word};
+    assign arriving[2*ONE*0 +: 2*ONE] = {dut.run_memory_i.run_bank_i.fetched, dut.run_memory_i.shown_word};
 end endgenerate
 wire reads = playing && !restart && !screen_starts;
 genvar i, k;
@@ -164,6 +167,7 @@ generate for (i = 0; i < PIXELS; i = i + 1) begin: banks
     wire [1:0] head = head_slot[2*i +: 2], coming = on_the_way[2*i +: 2];
     wire [4:0] head_place = PIXELS == 1 ? place : (place + (1 - i)) >> 1;
     wire [4:0] most = blank - 5;
+    always @* if (known) assert (bank_reads[i]);
     always @* if (known && reads) begin
         assert (held <= 4 && there <= 4 && held == there + coming[0] + coming[1]);
         assert (put_slot[2*i +: 2] == head + there[1:0]);

@@ -3,12 +3,12 @@
 //
 // The picked run is an arbitrary one of those that the queue takes, so what is asserted for it holds for all. Assumed:
 // a cycle of reset at first, and a take only while a run is offered. A memory of three places is enough for the logic,
-// which depends on their number only where the places wrap.
+// which depends on their number only where the places wrap. It is one bank; leaf tests have several.
 //
 // [proof]
 // claim = "the queue gives each run once and in order, and a row that begins with room never waits for it"
-// modules = ["run_queue", "read_ahead", "run_memory"]
-// as_registers = ["run_memory", "read_ahead"]
+// modules = ["run_queue", "read_ahead", "run_memory", "run_bank"]
+// as_registers = ["run_bank", "read_ahead"]
 // induction = 1
 // reach = 24
 // label = "{COLUMNS} columns"
@@ -74,11 +74,11 @@ wire [RUN_BITS-1:0] in_slot =
     slot == 0 ? \dut.read_ahead_i.slots[0] : slot == 1 ? \dut.read_ahead_i.slots[1] :
     slot == 2 ? \dut.read_ahead_i.slots[2] : \dut.read_ahead_i.slots[3] ;
 wire [RUN_BITS-1:0] in_memory =
-    place % PLACES == 0 ? \dut.run_memory_i.memory[0] : place % PLACES == 1 ? \dut.run_memory_i.memory[1] :
-    \dut.run_memory_i.memory[2] ;
+    place % PLACES == 0 ? \dut.run_memory_i.run_bank_i.memory[0] :
+    place % PLACES == 1 ? \dut.run_memory_i.run_bank_i.memory[1] : \dut.run_memory_i.run_bank_i.memory[2] ;
 always @* if (known) begin
     assert (dut.unread <= PLACES && in_slots <= SLOTS && ahead <= SLOTS && all == ahead + dut.unread);
-    assert (ahead == in_slots + on_the_way[0] + on_the_way[1]);
+    assert (ahead == in_slots + on_the_way[0] + on_the_way[1] && dut.run_memory_i.run_bank_i.reads);
     assert (read_place < PLACES && write_place == (next_place >= PLACES ? next_place - PLACES : next_place));
     assert (put_slot == dut.read_ahead_i.head_slot + in_slots[1:0]);
     assert (row_left <= COLUMNS && dut.unread + row_left <= PLACES);
@@ -87,7 +87,7 @@ always @* if (known) begin
         if (older < in_slots) assert (in_slot == picked_run);
         else if (older >= ahead) assert (in_memory == picked_run);
         else if (older == in_slots && on_the_way[1]) assert (dut.shown_word == picked_run);
-        else assert (dut.run_memory_i.fetched == picked_run);
+        else assert (dut.run_memory_i.run_bank_i.fetched == picked_run);
     end
     if (all != 0 && in_slots == 0) assert (age == 0 || on_the_way >> (age - 1) != 0);
 end

@@ -140,7 +140,7 @@ def _peeked(body: str, instances: Mapping[str, str], verilog: Mapping[str, str])
         *inside, last = names[first + 1 :]
         module = instances[names[first]]
         for name in inside:
-            instance = re.search(rf"^(\w+) {name} \(", verilog[f"{module}.v"], re.M)
+            instance = re.search(rf"^(\w+) {name} \(", verilog.get(f"{module}.v", ""), re.M)
             module = instance[1] if instance else ""
         for _, kind, signal, memory in SIGNAL.findall(verilog.get(f"{module}.v", "")):
             if signal == last and bool(memory) == ("[" in path):

@@ -15,8 +15,18 @@ Run = tuple[int, int]
 """The column after a run's last, and its pixel."""
 
 PIXEL_BITS = 6
-AHEAD = 4
-"""Runs that a `read_ahead` holds or fetches."""
+BANK = 2048
+"""Runs of a bank of a memory."""
+
+
+def memory_cycles(places: int, bank: int = BANK) -> int:
+    """Return the cycles from a place of a memory to its run: two, and one more for each fourfold of banks."""
+    return 2 + next(stages for stages in range(9) if bank * 4**stages >= places)
+
+
+def slots_of(latency: int) -> int:
+    """Return the runs that a `read_ahead` holds or fetches: two and one for each cycle of its memory, or a few more."""
+    return 4 if latency == 2 else 8
 
 
 def any_row(random: np.random.Generator, columns: int) -> list[Run]:
@@ -94,10 +104,14 @@ class Beam:
 
 @dataclass
 class Queue:
-    """`run_queue`, cycle by cycle: a run is fetched a cycle after it came at the earliest, and offered three later."""
+    """`run_queue`, cycle by cycle: a run is fetched a cycle after it came at the earliest.
+
+    It is offered in the cycle after it has come from its memory.
+    """
 
     columns: int
     places: int
+    bank: int = BANK
     waiting: list[Run] = field(default_factory=list)
     ahead: list[tuple[int, Run]] = field(default_factory=list)
 
@@ -111,11 +125,15 @@ class Queue:
 
     @property
     def head(self) -> Run | None:
-        return self.ahead[0][1] if self.ahead and self.ahead[0][0] >= 3 else None
+        return self.ahead[0][1] if self.ahead and self.ahead[0][0] > self.latency else None
+
+    @property
+    def latency(self) -> int:
+        return memory_cycles(self.places, self.bank)
 
     def clock(self, run: Run | None, take: bool, reset: bool) -> None:
         """End a cycle in which a run was offered to the queue, or its head was taken."""
-        fetches, accepts = bool(self.waiting) and len(self.ahead) < AHEAD, self.ready
+        fetches, accepts = bool(self.waiting) and len(self.ahead) < slots_of(self.latency), self.ready
         self.ahead = [(age + 1, one) for age, one in self.ahead[take:]]
         if fetches:
             self.ahead.append((1, self.waiting.pop(0)))

@@ -16,11 +16,11 @@ from raycaster.rtl.video.video_generator import video_generator
 COLUMNS, ROWS = 8, 4
 
 
-@by(entries=[16, 20], pixels=[1, 2], doubling=[1, 2], clocks=[1, 2])
-def test_list_player(entries, pixels, doubling, clocks, leaf_of, random):
+@by(entries=[16, 20], bank=[2048, 8, 2], pixels=[1, 2], doubling=[1, 2], clocks=[1, 2])
+def test_list_player(entries, bank, pixels, doubling, clocks, leaf_of, random):
     made = {"written": lambda: ListEntry(COLUMNS, PIXEL_BITS), "scan": Scan}
     ports = {"write_place": entry_bits(entries), "shown": pixels * PIXEL_BITS}
-    leaf = leaf_of(list_player, entries=entries, pixels=pixels, **ports, **made)
+    leaf = leaf_of(list_player, entries=entries, pixels=pixels, bank=bank, **ports, **made)
     beam, upper, view_run, full = Beam(list_screen(COLUMNS, ROWS, doubling, clocks), pixels), 0, 0, 0
     # The rows of each list, and what is still to be written of the one that is drawn.
     frames, runs, place = [None, None], [], 0

@@ -1,31 +1,33 @@
 # SPDX-License-Identifier: MIT
-"""Leaf test of `run_memory`: every place is written and read in any order, also one after the other."""
+"""Leaf test of `run_memory`, `run_bank` and `bank_choice`: places are written and read in any order, or in turn."""
 
-from list_vectors import PIXEL_BITS, entry
+from list_vectors import PIXEL_BITS, entry, memory_cycles
 from vectors import by
 
 from raycaster.hdl.signals import bits_for
 from raycaster.rtl.span.lists import ListEntry
-from raycaster.rtl.span.run_memory import run_memory
+from raycaster.rtl.span.run_memory import read_latency, run_memory
 
 
-@by(places=[1, 6, 8])
-def test_run_memory(places, leaf_of, random):
+@by(places=[1, 6, 8, 67], bank=[128, 4, 2])
+def test_run_memory(places, bank, leaf_of, random):
     made = {name: lambda: ListEntry(9, PIXEL_BITS) for name in ("written", "shown")}
     ports = dict.fromkeys(("write_place", "read_place"), bits_for(places))
-    leaf, held = leaf_of(run_memory, places=places, **ports, **made), {}
-    for cycle in range(400):
+    leaf, held = leaf_of(run_memory, places=places, bank=bank, **ports, **made), {}
+    latency = memory_cycles(places, bank)
+    assert read_latency(places, bank) == latency
+    for cycle in range(600):
         write = int(cycle < places or random.random() < 0.5)
         place = cycle if cycle < places else int(random.integers(places))
-        read = int(random.choice([0, places - 1, random.integers(places)]))
+        read = int(random.choice([0, places - 1, cycle % places, random.integers(places)]))
         run = (int(random.integers(10)), int(random.integers(1 << PIXEL_BITS)))
         leaf.case({"write": write, "write_place": place, **entry("written", run), "read_place": read})
         if read in held and not (write and place == read):
-            leaf.expected[cycle + 2] |= entry("shown", held[read])
+            leaf.expected[cycle + latency] |= entry("shown", held[read])
         if write:
             held[place] = run
-    leaf.expected.pop(leaf.cycle, None)
-    leaf.expected.pop(leaf.cycle + 1, None)
-    leaf.check(settled=places + 2)
+    for cycle in range(latency):
+        leaf.expected.pop(leaf.cycle + cycle, None)
+    leaf.check(settled=places + latency)
     # Tools would take minutes for the initial values of a large list.
-    assert "memory[i] =" not in leaf.modules[-1].path.read_text()
+    assert not any("memory[i] =" in one.path.read_text() for one in leaf.modules)

@@ -12,10 +12,11 @@ FILLING = 40
 """Cycles after which all words of the memories have been written."""
 
 
-@by(columns=[1, 5], places=[5, 8], pace=[(0.0, 0.0), (0.3, 0.7), (0.7, 0.3)])
-def test_run_queue(columns, places, pace, leaf_of, random):
+@by(columns=[1, 5], places=[5, 8], bank=[2048, 4, 2], pace=[(0.0, 0.0), (0.3, 0.7), (0.7, 0.3)])
+def test_run_queue(columns, places, bank, pace, leaf_of, random):
     made = {name: lambda: ListEntry(9, PIXEL_BITS) for name in ("run", "head")}
-    leaf, model = leaf_of(run_queue, offered=bit, columns=columns, places=places, **made), Queue(columns, places)
+    sizes = {"columns": columns, "places": places, "bank": bank}
+    leaf, model = leaf_of(run_queue, offered=bit, **sizes, **made), Queue(**sizes)
     leaf.case({"reset": 1})
     levels, streak, longest = set(), 0, 0
     coming, going = pace

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: MIT
+"""A stage between the banks of a memory for runs and its output."""
+
+from myhdl import always, block, instances
+
+
+@block
+def bank_choice(clk, run_0, run_1, run_2, run_3, run):
+    """Register the run of up to four banks, of which all but one show 0.
+
+    Args:
+        clk: the clock.
+        run_0: unsigned.
+        run_1: unsigned.
+        run_2: unsigned.
+        run_3: unsigned.
+        run: unsigned output; the run, a cycle later.
+    """
+
+    @always(clk.posedge)
+    def choose():
+        run.next = run_0 | run_1 | run_2 | run_3
+
+    return instances()
