@@ -246,6 +246,15 @@ between: a linear value that is less than another at both ends of a row is less 
 shares: if m quarters are mirrored, a weight is the sum of what the mirror keeps and what it passes on
   given 4*T == (4 - m)*s + m*U, 4*v == w*m
   then w*T == (w - v)*s + v*U
+sign-change: a line of growth -g from f = y, or of growth g from f = -y - 1, keeps its sign for floor(y/g) columns
+  integers, given g > 0, y >= 0, y == g*q + r, 0 <= r < g, i >= 0
+  then ((y - i*g >= 0) == (i <= q)) and ((-y - 1 + i*g < 0) == (i <= q))
+one-is-before: of two lines A - s and -A - t, with s + t = 1, exactly one is not negative
+  integers, given 0 <= s <= 1, s + t == 1
+  then (A - s >= 0) != (-A - t >= 0)
+before-by-index: N2 e1 - N1 e2 - s >= 0: hit 1 is nearer, or as near and s = 0
+  integers, given 0 <= s <= 1, A == n2*e1 - n1*e2
+  then (A - s >= 0) == (n1*e2 < n2*e1 or (n1*e2 == n2*e1 and s == 0))
 from-the-light: S = (E - L) e + D n leads from the light L to the point E + D n/e, which it meets at 1/e
   given t*e == n, s*e == 1, S == (E - L)*e + D*n
   then L + S*s == E + D*t

@@ -35,6 +35,8 @@ from raycaster.rtl.common.interfaces import AIM_CYCLES
 from raycaster.rtl.common.records import Camera, Mirror, Rect, Surface, look_fields
 from raycaster.rtl.cull.rect_setup import SETUP_LATENCY
 from raycaster.rtl.engines import ENGINES, SEED, engine_of
+from raycaster.rtl.span.first_change import division_cycles, quotient_bits
+from raycaster.rtl.span.records import Entry
 from raycaster.screens import Screen
 from raycaster.verif.formal.alone import (
     Alone,
@@ -53,7 +55,7 @@ ORDER = (
     "ray-order", "shadow-order", "line-sections", "render-counters", "finder-quotients", "nearest-depth",
     "shares-exact", "group-safe", "tester-exact", "tester-products", "nearest-products",
     "eye-exact", "cell-products", "shadow-products", "shadow-wiring", "unit-wiring", "slope-exact", "row-setup",
-    "fixed-rects", "divider-exact", "run-order", "whole-frames", "played-lines",
+    "fixed-rects", "divider-exact", "sign-change", "span-sweep", "run-order", "whole-frames", "played-lines",
 )  # fmt: skip
 """Names of the properties, in the order of tables. The file of each has underscores for dashes."""
 
@@ -117,7 +119,8 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
     **{
         name.upper(): getattr(widths, name)
         for name in (
-            "index_bits", "unit_bits", "offset_bits", "row_bits", "position_bits", "factor_bits",
+            "column_bits", "divisor_bits", "index_bits", "line_bits", "unit_bits", "offset_bits", "row_bits",
+            "position_bits", "factor_bits",
             "eye_bits", "walk_bits", "wide_walk_bits", "share_bits",
         )
     },
@@ -131,6 +134,9 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
     "RECT_BITS": lambda config: len(Rect(config).word),
     "SURFACE_BITS": lambda config: len(Surface(config).word),
     "MIRROR_BITS": lambda config: len(Mirror(config).word),
+    "QUOTIENT_BITS": quotient_bits,
+    "CYCLES": division_cycles,
+    "ENTRY_BITS": lambda config: len(Entry(config).word),
 }  # fmt: skip
 """Numbers of a design, by the names that they have in wrappers."""
 

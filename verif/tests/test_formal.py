@@ -27,7 +27,7 @@ FAULTY = [proof for proof in PROPERTIES if proof.faults]
 
 
 @pytest.mark.slow_sets(
-    "avalon-agent", "finder-quotients", "fixed-rects",
+    "avalon-agent", "finder-quotients", "fixed-rects", "span-sweep",
 )  # fmt: skip
 @pytest.mark.parametrize("proof", [proof for proof in FAULTY if proof.small], ids=str)
 def test_a_property_holds(proof, output):
@@ -174,6 +174,10 @@ LEMMA_FAULTS = {
     "between": [("x < y", "x + 1 < y"), ("i <= N", "i <= N + 1"), ("a + N*g < b", "a + N*g <= b")],
     "shares": [("(w - v)*s", "w*s"), ("(4 - m)*s", "(3 - m)*s"), ("4*v == w*m", "4*v == m")],
     "cell-parity": [("a != b", "a == b"), ("(c == 1)", "(c == 0)"), ("0 <= b <= 1", "0 <= b <= 2")],
+    "sign-change": [("y - i*g >= 0", "y - i*g > 0"), ("-y - 1 + i*g", "-y + i*g"), ("0 <= r < g", "0 <= r <= g")],
+    "one-is-before": [("(A - s >= 0)", "(A >= 0)"), ("-A - t >= 0", "-A - t > 0"), ("s + t == 1", "s + t == 0")],
+    "before-by-index": [("n1*e2 < n2*e1 or", "n1*e2 <= n2*e1 or"), ("s == 0)", "s == 1)"),
+                        ("0 <= s <= 1", "0 <= s <= 2")],
     "from-the-light": [("S*s", "S"), ("(E - L)*e", "(E + L)*e"), ("+ D*n", "- D*n"), ("s*e == 1", "s*e == 2")],
     "before-the-point": [("n*e < d", "n*e <= d"), ("n*e < d", "n < d*e"), ("e > 0", "e != 0")],
     "lit-side": [("L < k)", "L <= k)"), ("(L - k) > 0", "(L - k) >= 0"), ("D < 0 and k < L", "D < 0 and L < k"),

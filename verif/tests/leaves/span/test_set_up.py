@@ -50,8 +50,10 @@ def test_set_up(options, leaf_of, random):
     config = span_config(**options)
     leaf = leaf_of(chain_bench, config, **chain_ports(config))
     leaf.case({"reset": 1, "begin_sweep": 0})
-    appended, kinds = {}, set()
-    for _ in range(leaf.some(75)):
+    appended, kinds, every = {}, set(), 6 if config.reflections else 3
+    for drawn in range(500):
+        if drawn >= leaf.some(75) and (leaf.few or len(kinds) == every):
+            break
         table = random_rectangles(random, config.rectangles, closed=None if config.rectangles > 6 else False)
         slopes, step = any_slope(random, config)
         slope = tuple(Line(*line) for line in zip(slopes, step, strict=True))
@@ -97,7 +99,7 @@ def test_set_up(options, leaf_of, random):
         ]  # fmt: skip
         assert written == entries
         begin = end
-    assert leaf.few or len(kinds) == (6 if config.reflections else 3)
+    assert leaf.few or len(kinds) == every
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// The number of columns until a line changes its sign: 1 + floor(y / g), with y = f or -f - 1, and g the growth.
+//
+// A division is picked, and compared with long division in each stage: a digit is 1 if the remainder with the next bit
+// of y is at least g, which is then subtracted. By `division-step`, y = g q + r with r < g after the last digit, and by
+// `sign-change`, the sign changes q + 1 columns further. A division may start in each cycle, so others are in the
+// pipeline with the picked one.
+//
+// Assumed: a cycle of reset at first, and a growth that fits the divisor. The count is claimed if it fits, which it does
+// within the screen.
+//
+// [proof]
+// claim = "the column at which a line's sign changes is 1 + floor(y / g) columns further, with a division per cycle"
+// modules = ["first_change"]
+// induction = 1
+// reach = "CYCLES + 4"
+// quick = ["span tiny rectangles=3"]
+// designs = ["span rows=180 scale=6 pixels=2 turn light patterns materials"]
+// [faults]
+// "span-tiny48-s2-u2-r3-m1-l11520-c8" = ["first_change.y increased", "first_change.size increased",
+//   "divider_step.difference edge", "first_change.divisors_1 short", "first_change.remainders_3 short",
+//   "first_change.under_way short", "division_stage.kept_digits late", "first_change.first_digits short"]
+
+module sign_change;
+localparam G = DIVISOR_BITS - 1, Q = QUOTIENT_BITS, STAGES = CYCLES - 1;
+first_change dut (.*);
+
+reg known = 0, picked;
+(* anyseq *) reg pick;
+reg [5:0] age;
+reg [CYCLES-1:0] started;
+reg [LINE_BITS-1:0] y;
+reg [G-1:0] g;
+wire below = division_value[LINE_BITS-1], falls = division_growth[G];
+wire [LINE_BITS-1:0] first = below ? ~division_value : division_value;
+wire [G:0] size = falls ? -division_growth : division_growth;
+always @(posedge clk) begin
+    known <= 1;
+    started <= reset ? 0 : {started, start};
+    if (reset) picked <= 0;
+    else if (start && pick) begin
+        {picked, age} <= {1'b1, 6'd0};
+        y <= first;
+        g <= size[G-1:0];
+    end
+    else if (age == CYCLES - 1) picked <= 0;
+    else age <= age + 1;
+end
+
+// Long division, two digits in a cycle, and one in the last if their number is odd.
+wire fits = y >> Q < g;
+reg [G-1:0] r;
+reg [Q-1:0] q, bits;
+wire [G:0] half = {r, bits[Q-1]}, half_rest = half >= g ? half - g : half;
+wire [G:0] whole = {half_rest[G-1:0], bits[Q-2]}, whole_rest = whole >= g ? whole - g : whole;
+wire single = Q % 2 && age == STAGES - 1;
+wire [G-1:0] next_r = single ? half_rest : whole_rest;
+wire [Q-1:0] next_q = single ? {q, half >= g} : {q, half >= g, whole >= g};
+wire [Q-1:0] next_bits = bits << (single ? 1 : 2);
+always @(posedge clk) begin
+    if (start && pick) {r, q, bits} <= {first[LINE_BITS-1:Q], {Q{1'b0}}, first[Q-1:0]};
+    else if (age < STAGES) {r, q, bits} <= {next_r, next_q, next_bits};
+end
+
+// Invariants: the outputs of each stage.
+wire [Q-1:0] digits [0:STAGES-1];
+wire [G-1:0] rest [0:STAGES-1], divisor [0:STAGES-1];
+genvar i;
+generate
+    if (STAGES > 0) begin
+        assign digits[0] = dut.division_stage_0_i.next_digits, rest[0] = dut.division_stage_0_i.next_remainder;
+        assign divisor[0] = dut.division_stage_0_i.next_divisor;
+    end
+    if (STAGES > 1) begin
+        assign digits[1] = dut.division_stage_1_i.next_digits, rest[1] = dut.division_stage_1_i.next_remainder;
+        assign divisor[1] = dut.division_stage_1_i.next_divisor;
+    end
+    if (STAGES > 2) begin
+        assign digits[2] = dut.division_stage_2_i.next_digits, rest[2] = dut.division_stage_2_i.next_remainder;
+        assign divisor[2] = dut.division_stage_2_i.next_divisor;
+    end
+    if (STAGES > 3) begin
+        assign digits[3] = dut.division_stage_3_i.next_digits, rest[3] = dut.division_stage_3_i.next_remainder;
+        assign divisor[3] = dut.division_stage_3_i.next_divisor;
+    end
+    if (STAGES > 4) begin
+        assign digits[4] = dut.division_stage_4_i.next_digits, rest[4] = dut.division_stage_4_i.next_remainder;
+        assign divisor[4] = dut.division_stage_4_i.next_divisor;
+    end
+    if (STAGES > 5) begin
+        assign digits[5] = dut.division_stage_5_i.next_digits, rest[5] = dut.division_stage_5_i.next_remainder;
+        assign divisor[5] = dut.division_stage_5_i.next_divisor;
+    end
+    for (i = 0; i < STAGES; i = i + 1) always @* if (known && picked && age == i) begin
+        assert (divisor[i] == g && bits == (y[Q-1:0] << 2 * i) && q >> 2 * i == 0);
+        if (fits) assert (digits[i] == (next_bits | next_q) && rest[i] == next_r);
+    end
+endgenerate
+
+// The claim.
+always @* begin
+    if (!known) assume (reset);
+    if (picked) assume (!(start && pick));
+    assume (!size[G]);
+    if (known) assert (dut.under_way == started && done == started[CYCLES-1]);
+    if (known && picked) assert (age < CYCLES && started[age]);
+    if (known && picked && age == CYCLES - 1 && fits) assert (columns == (q + 1) % (1 << COLUMN_BITS));
+end
+always @* cover (known && picked && age == CYCLES - 1 && g == 3 && y == 8 && columns == 3);
+endmodule

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+// A pass of the sweep: between its first column and `stop` the winner is seen, in a gap nothing; at `stop` the heir is.
+//
+// Seen in a column is the entry that is met there and is before all others that are. Which of two entries is before the
+// other may change at one column: any column, for any pair, which is all that is used of a line. So the proof holds for
+// any function in place of the products. The picked column is an arbitrary one, so what is asserted there holds for
+// all. Three entries are the fewest with which two can follow at the same column while a third one is seen.
+//
+// Passes have no state in common but what a pass sets when it starts, so all have the same constant inputs here.
+//
+// Assumed: a cycle of reset at first; entries of different rectangles, none of them empty, within the chain; the winner
+// is seen at the first column, or nothing is, except for what begins there; in the picked column the order of three is
+// no circle, by the lemma `nearer`; answers to this block's questions only, one after each. That one of two entries is
+// before the other is the lemma `one-is-before`, and the count of columns `sign-change`.
+//
+// [proof]
+// claim = "a span is what is seen in each of its columns, its heir is what is seen after it, and every pass ends"
+// modules = ["sweep"]
+// induction = 1
+// reach = 30
+// quick = ["span tiny rectangles=3"]
+// designs = ["span rows=180 scale=6 pixels=2 turn light patterns materials rectangles=3"]
+// [faults]
+// "span-tiny48-s2-u2-r3-m1-l11520-c8" = ["sweep.follows 0", "sweep.meets 1", "sweep.nearer inverted",
+//   "sweep.nearer_heir 1", "sweep.same 1", "sweep.same_heir 1", "sweep.found_at edge", "sweep.crossing increased",
+//   "sweep.rivalled 0", "sweep.inherited 1", "sweep.answer_left edge", "sweep.answer_right 0", "sweep.later inverted",
+//   "sweep.bound as stop", "sweep.last as bound", "sweep.left as column", "sweep.in_time 1", "sweep.heir_word late",
+//   "sweep.chain_stop increased"]
+
+module span_sweep;
+localparam C = COLUMN_BITS, N = EYE_BITS - 1, E = ENTRY_BITS;
+sweep dut (.*);
+
+// The table, the order of its entries, and the pass.
+(* anyconst *) reg [3*E-1:0] entries;
+(* anyconst *) reg [C-1:0] change_01, change_02, change_12, p;
+(* anyconst *) reg from_01, from_02, from_12;
+(* anyconst *) reg [1:0] seen;
+(* anyconst *) reg [1:0] count;
+(* anyconst *) reg [C-1:0] column, chain_stop;
+(* anyconst *) reg gap;
+(* anyconst *) reg [E-1:0] nobody;
+
+wire [E-1:0] entry_0 = entries[E-1:0], entry_1 = entries[2*E-1:E], entry_2 = entries[3*E-1:2*E];
+wire [E-1:0] first_seen = seen == 0 ? entry_0 : seen == 1 ? entry_1 : entry_2;
+wire [2:0] met_p, met_first, met_stop, met_left, met_right;
+wire [8:0] before_p, before_first;  // bit 3 i + j: entry i is before entry j
+genvar a, b;
+generate
+    for (a = 0; a < 3; a = a + 1) begin
+        wire [E-1:0] one = entries[a*E +: E];
+        wire [C-1:0] start_a = one[C +: C], stop_a = one[0 +: C];
+        wire [1:0] index_a = one[E-1 -: 2], axis_a = one[E-3 -: 2];
+        wire is = a < count;
+        assign met_p[a] = is && start_a <= p && p < stop_a;
+        assign met_first[a] = is && start_a <= column && column < stop_a;
+        assign met_stop[a] = is && start_a <= stop && stop < stop_a;
+        assign met_left[a] = is && start_a <= dut.asked_left && dut.asked_left < stop_a;
+        assign met_right[a] = is && start_a <= dut.asked_right && dut.asked_right < stop_a;
+        always @* if (is) begin
+            assume (start_a < stop_a && stop_a <= chain_stop && axis_a != 3);
+            if (gap && met_first[a]) assume (start_a == column);
+            if (!gap && met_first[a] && seen != a) assume (before_first[3*seen + a]);
+        end
+        for (b = 0; b < 3; b = b + 1) begin
+            assign before_p[3*a + b] = before(a, b, p);
+            assign before_first[3*a + b] = before(a, b, column);
+            always @* if (is && b < a) assume (index_a != entries[b*E + E - 1 -: 2]);
+        end
+    end
+endgenerate
+always @* begin
+    assume (count <= 3 && column < chain_stop);
+    if (!gap) assume (seen < count && met_first[seen]);
+    if (met_p == 7) assume (!(before_p[1] && before_p[5] && before_p[6]) && !(before_p[3] && before_p[7] && before_p[2]));
+end
+
+// The column in which the order of two changes, and the order from there on.
+function [C:0] changed(input [1:0] i, input [1:0] j);
+    changed =
+        {i, j} == 4'b0001 ? {from_01, change_01} : {i, j} == 4'b0010 ? {from_02, change_02} :
+        {i, j} == 4'b0110 ? {from_12, change_12} : {i, j} == 4'b0100 ? {!from_01, change_01} :
+        {i, j} == 4'b1000 ? {!from_02, change_02} : {!from_12, change_12};
+endfunction
+function before(input [1:0] i, input [1:0] j, input [C-1:0] c);
+    reg [E-1:0] one, other;
+    reg [C:0] change;
+    begin
+        one = i == 0 ? entry_0 : i == 1 ? entry_1 : entry_2;
+        other = j == 0 ? entry_0 : j == 1 ? entry_1 : entry_2;
+        change = changed(i, j);
+        before = one[E-3 -: 2] == other[E-3 -: 2]
+            ? {one[2*C +: N], one[E-1 -: 2]} < {other[2*C +: N], other[E-1 -: 2]}
+            : change[C] ^ c < change[C-1:0];
+    end
+endfunction
+
+assign winner_word = gap ? nobody : first_seen;
+
+// The table, and a pass from its start to its end.
+reg known = 0, runs;
+reg [1:0] tested, heir_number;
+reg [E-1:0] tested_word;
+always @(posedge clk) begin
+    known <= 1;
+    if (reset) runs <= 0;
+    else if (start || done) runs <= start;
+    if (read) {tested, tested_word} <= {place, place == 0 ? entry_0 : place == 1 ? entry_1 : entry_2};
+    if (dut.take) heir_number <= tested;
+end
+wire [E-1:0] tested_entry = tested == 0 ? entry_0 : tested == 1 ? entry_1 : entry_2;
+wire [E-1:0] heir_entry = heir_number == 0 ? entry_0 : heir_number == 1 ? entry_1 : entry_2;
+always @* begin
+    if (!known) assume (reset);
+    if (runs) assume (!start);
+end
+
+// Questions and answers.
+reg asked, divides;
+reg [1:0] rival;
+reg [C-1:0] left, right;
+wire [1:0] other = dut.rivalled ? heir_number : seen;
+wire [E-1:0] other_entry = dut.rivalled ? heir_entry : first_seen;
+wire [C:0] change = changed(tested, rival);
+wire above_left = before(tested, rival, left), above_right = before(tested, rival, right);
+always @(posedge clk) begin
+    if (reset) {asked, divides} <= 0;
+    else begin
+        asked <= asks_ask || asked && !answer_valid;
+        divides <= asks_divide || divides && !answer_divided;
+    end
+    if (asks_ask) {rival, left, right} <= {other, dut.asked_left, dut.asked_right};
+end
+always @* begin
+    if (!asked) assume (!answer_valid);
+    if (!divides) assume (!answer_divided);
+    if (answer_valid) assume ((answer_left < 0) != above_left && (answer_right < 0) != above_right);
+    if (answer_divided) assume (answer_columns == (change - left) % (1 << C));
+    if (known && asks_ask) begin
+        assert ((!asked || answer_valid) && (!divides || answer_divided) && tested != other && dut.asked_left <= dut.asked_right);
+        assert (met_left[tested] && met_right[tested] && met_left[other] && met_right[other]);
+        assert (asks_query_left == dut.asked_left && asks_query_right == dut.asked_right);
+        assert ({asks_query_axis_1, asks_query_back_1} == tested_entry[2*C+N +: 3]);
+        assert ({asks_query_axis_2, asks_query_back_2} == other_entry[2*C+N +: 3]);
+        assert (asks_query_factor_1 == other_entry[2*C +: N] && asks_query_factor_2 == tested_entry[2*C +: N]);
+        assert (asks_query_strict == (tested_entry[E-1 -: 2] > other_entry[E-1 -: 2]));
+    end
+    if (known && asks_divide) begin
+        assert (answer_valid && !above_left && above_right);
+        assert (asks_division_value == answer_left && asks_division_growth == answer_growth);
+    end
+end
+
+// What holds after the entries below `passed`, and for the one that waits for an answer.
+wire [1:0] passed = count - dut.rest;
+wire [C-1:0] winner_end = gap ? chain_stop : first_seen[C-1:0];
+wire scan = dut.state == 1, order = dut.state == 2, cross = dut.state == 3, rivals = dut.state == 4;
+wire within = column <= p && p < stop;
+wire [C-1:0] tested_start_now = tested_word[C +: C], tested_end = tested_word[C-1:0];
+wire [1:0] tested_axis_now = tested_word[E-3 -: 2];
+always @* if (known) begin
+    assert (dut.state <= 4 && runs == (dut.state != 0) && (runs || place == 0));
+    assert (asked == (order || rivals) && divides == cross);
+    if (runs) begin
+        assert (dut.rest <= count && place == passed + 2'd1);
+        if (dut.rest != 0) assert (tested == passed && tested_word == tested_entry);
+        assert (stop <= winner_end && (gap ? column <= stop : column < stop));
+        if (!inherited) assert (stop == winner_end);
+        if (inherited) begin
+            assert (heir_number < passed && heir_word == heir_entry && met_stop[heir_number]);
+            assert (gap || heir_number != seen);
+            if (!gap && p == stop && stop < winner_end) assert (before_p[3*heir_number + seen]);
+        end
+    end
+    if (order || cross) begin
+        assert (!gap && dut.rest != 0 && rival == seen && tested != seen && left == dut.left_1);
+        assert (left == (tested_start_now > column ? tested_start_now : column));
+        assert (left < winner_end && left <= stop && left < tested_end && left <= right);
+        assert (right == (tested_end - 1'b1 < dut.bound ? tested_end - 1'b1 : dut.bound));
+        assert (tested_axis_now != first_seen[E-3 -: 2]);
+    end
+    if (cross) assert (!above_left && above_right);
+    if (rivals) begin
+        assert (dut.rest != 0 && inherited && rival == heir_number && left == stop && right == stop);
+        assert (met_stop[tested] && (gap || tested != seen) && tested_axis_now != heir_entry[E-3 -: 2]);
+        if (within && met_p[tested]) assert (!gap && before_p[3*seen + tested]);
+        if (!gap && p == stop && stop < winner_end) assert (before_p[3*tested + seen]);
+    end
+end
+generate
+    for (a = 0; a < 3; a = a + 1) always @* if (known && runs && met_p[a]) begin
+        if (a < passed && within) assert (!gap && (seen == a || before_p[3*seen + a]));
+        if (a < passed && p == stop && !(seen == a && !gap))
+            assert (inherited && (heir_number == a || before_p[3*heir_number + a]));
+        // The claim: the same, for all entries.
+        if (done && within) assert (!gap && met_p[seen] && (seen == a || before_p[3*seen + a]));
+        if (done && p == stop) assert (inherited && (heir_number == a || before_p[3*heir_number + a]));
+    end
+endgenerate
+
+// Every pass ends: after an answer there is a question that has not been asked of this entry, or another entry.
+always @* if (known && $past(known) && $past(runs) && runs) begin
+    if ($past(scan) && scan) assert (dut.rest < $past(dut.rest));
+    if (!$past(scan) && scan) assert (dut.rest < $past(dut.rest));
+    if ($past(order) && !order) assert (!cross || dut.rest == $past(dut.rest));
+    if ($past(rivals)) assert (rivals || scan);
+    if ($past(cross)) assert (cross || rivals || scan);
+end
+
+// Covers two that follow at the same column, and a crossing.
+always @* cover (known && rivals && answer_valid && dut.take && !gap && stop < winner_end);
+always @* cover (known && done && count == 3 && inherited && !gap && stop < winner_end && stop > column + 2);
+endmodule
