@@ -228,6 +228,7 @@ def test_a_fault_is_noticed_in_traffic(noticed: Noticed, fault):
     assert re.search(f"{place}({complaint})", said)
 
 
+@pytest.mark.slow
 def test_icarus_takes_clocks_that_rest(bench: Bench):
     """In `make test`, this is the run of the traffic bench without a fault."""
     bench(TRAFFIC_BENCH, SMALL[OWN], "icarus", seeds=(1,), defines=GATED)

@@ -82,6 +82,7 @@ def test_the_example_row_is_drawn_so():
         start = end
 
 
+@pytest.mark.slow
 def test_timing_diagrams_match_the_design():
     """The kept diagrams match the converted Verilog, lane by lane."""
     BUILD.mkdir(exist_ok=True)

@@ -221,7 +221,7 @@ FRAMES = [
 ]
 
 
-@pytest.mark.slow_sets(quick=["exact-boxes", "exact-lamplight-all"])
+@pytest.mark.slow_sets(quick=["exact-lamplight-all"])
 @pytest.mark.parametrize(
     ("engine", "name", "scope", "options"), FRAMES, ids=["-".join([*one[:3], *one[3]]) for one in FRAMES]
 )

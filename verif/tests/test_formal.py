@@ -37,11 +37,7 @@ def test_a_property_holds(proof, output):
 
 
 @pytest.mark.slow_sets(
-    quick=[
-        "apb", "axi4lite", "cell-products", "eye-exact", "group-safe", "host-transfers", "line-sections",
-        "nearest-products", "row-setup", "shadow-order", "shadow-products", "shares-exact", "slope-exact",
-        "tester-exact", "video-timing-toy", "wishbone",
-    ]
+    quick=["apb", "axi4lite", "host-transfers", "line-sections", "tester-exact", "video-timing-toy", "wishbone"]
 )  # fmt: skip
 @pytest.mark.parametrize("proof", FAULTY, ids=str)
 def test_faults_in_the_hardware_are_found(proof, output, record_property):

@@ -57,6 +57,7 @@ def word(tmp_path) -> Recording:
     return recorded(scene_word, ports, [{"reset": 1}, written, written], tmp_path, settled=1)
 
 
+@pytest.mark.slow
 def test_every_operand_catches_every_fault(tmp_path):
     widths = {"remainder": 3, "digits": 2, "divisor": 3, "next_remainder": 3, "next_digits": 2}
     ports = {name: partial(unsigned, width) for name, width in widths.items()}

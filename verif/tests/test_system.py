@@ -70,7 +70,7 @@ def test_a_program_runs(run, output, tmp_path):
         assert (frames[number] != frames[number - 1]).any() == moves, number
 
 
-@pytest.mark.slow_sets("memory", "serial-port", "torn-commit")
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("module", "right", "wrong", "complaint"),
     [

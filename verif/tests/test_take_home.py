@@ -68,7 +68,13 @@ PYTHON = re.compile(r"`|\b(?:None|True|False|config|self)\b|\b[a-z_]\w*\.[a-z_]"
 
 
 @pytest.mark.slow_sets(
-    "span-vga", "exact-tiny48-u2-r1", "exact-tiny48-u2-r2-m1-c8-wishbone", "exact-tiny48-u8", "exact-vga", "seed-vga"
+    "span-vga",
+    "exact-tiny48-u2-r1",
+    "exact-tiny48-u2-r2-m1-c8-wishbone",
+    "exact-tiny48-u4",
+    "exact-tiny48-u8",
+    "exact-vga",
+    "seed",
 )
 @configurations
 def test_tools_have_nothing_to_say(config: Configuration, tmp_path):
@@ -186,7 +192,18 @@ BENCH_FAULTS = [
 """Design, module, text and its replacement, and what the bench says."""
 
 
-@pytest.mark.slow_sets("720p", "play", "60 rows", "200 rows", "fixed", "pairs", "apb")
+@pytest.mark.slow_sets(
+    "720p",
+    "play",
+    "60 rows",
+    "200 rows",
+    "fixed",
+    "pairs",
+    "apb",
+    "wishbone",
+    "fault-0 lines",
+    "fault-address 0: n-axi",
+)
 @pytest.mark.parametrize(
     ("name", "module", "right", "wrong", "complaint"),
     [
@@ -226,7 +243,7 @@ def fusesoc(folder: Path, *target: str) -> subprocess.CompletedProcess[str]:
     return run_tool(folder, *command, HOME=str(folder), XDG_DATA_HOME=str(folder), XDG_CONFIG_HOME=str(folder))
 
 
-@pytest.mark.slow_sets("verilator", "icarus-apb", "icarus-wishbone")
+@pytest.mark.slow_sets("verilator", "icarus-apb", "icarus-axi4lite", "icarus-wishbone")
 @pytest.mark.parametrize(
     ("tool", "bus"), [("icarus", "avalon"), ("verilator", "avalon"), *(("icarus", bus) for bus in BRIDGED)]
 )
@@ -237,6 +254,7 @@ def test_fusesoc_simulates(tool, bus, tmp_path):
     assert "PASS: " in done.stdout
 
 
+@pytest.mark.slow_sets("sound", "waivers")
 @pytest.mark.parametrize(
     ("target", "file", "right", "wrong", "complaint"),
     [

@@ -47,6 +47,7 @@ _VGA = SCREENS["vga", 240]
 WIDE, TALL = replace(_VGA, rows=24, horizon_row=12), replace(_VGA, columns=32)
 """Screens with the full screen's steepest rays to the sides, and up and down."""
 
+few = pytest.mark.slow_sets("seed-3", "seed-8")
 of_each_engine = pytest.mark.parametrize("options", ENGINES, ids=lambda options: "-".join(map(str, options.values())))
 
 
@@ -138,6 +139,7 @@ def assert_drawn(
     return drawn
 
 
+@few
 @of_each_engine
 def test_stiff_catalogue(golden, options):
     config = design(**options)
@@ -148,6 +150,7 @@ def test_stiff_catalogue(golden, options):
             assert_drawn(golden, config, scene_words(case.scene, config), case.name, screen)
 
 
+@few
 @of_each_engine
 def test_random_worlds(golden, options):
     rng = np.random.default_rng([seed(), ENGINES.index(options)])

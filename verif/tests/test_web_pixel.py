@@ -145,6 +145,7 @@ def ask(page, **values: object) -> dict:
     return state
 
 
+@pytest.mark.slow_sets("exact-staircase", "seed-stage")
 @pytest.mark.parametrize(("engine", "name"), [("exact", "shadow_hall"), ("exact", "staircase"), ("seed", "stage")])
 def test_the_tab(page, site, engine, name):
     """The tab shows each ray and what its light meets, and marks only the pixel that this test plants."""

@@ -92,6 +92,7 @@ def test_a_camera_looks_around(tmp_path, capsys, pixels):
     assert ahead == again and len({right, ahead, left}) == 3
 
 
+@pytest.mark.slow
 def test_a_light_goes_around_the_room(tmp_path, capsys):
     """A quarter of the circle per frame, with a camera that stands still."""
     assert len(set(drawn(["evening"], tmp_path, capsys))) == 4
