@@ -61,7 +61,8 @@ def offers() -> str:
 def buses() -> str:
     """Table of the buses, with the cycles that their bench measures."""
     rows = [
-        [f"`BUS={name}`", bus.title, f"`{bus.port}_*`", bus.unit, bus.write, bus.read] for name, bus in BUSES.items()
+        [f"`BUS={name}`", bus.title, f"`{bus.port}_*`", bus.unit, bus.write or "-", bus.read or "-"]
+        for name, bus in BUSES.items()
     ]
     return table(["", "bus", "ports", "address unit", "cycles per write", "cycles per read"], rows)
 

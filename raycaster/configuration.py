@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, ConfigDict, Field
 from pydantic.dataclasses import dataclass as validated_dataclass
 from pydantic_core import PydanticKnownError
 
-from raycaster.buses import BUSES, OWN
+from raycaster.buses import BUSES, OWN, USUAL_BAUD
 from raycaster.errors import UserError, listed
 from raycaster.fixed import FixedScene
 from raycaster.screens import COORDINATE_BITS, Screen
@@ -173,6 +173,7 @@ class Options:
         None, description="point light with exact shadows, 1 or 0 (exact and span); by default 1 if the scene has one"
     )
     bus: BusName = Field(OWN, description=f"bus of the registers: {listed(BUSES)}")
+    baud: Whole = Field(USUAL_BAUD, ge=300, description="bits per second of the bus uart")
     fixed: FixedScene | None = Field(None, description="scene that is built into the hardware")
 
 
@@ -282,7 +283,7 @@ class Configuration(Options):
         # Defaults are left out of the name.
         culling = "" if self.fixed or self.culling == self.facts.divides else f"-k{int(self.culling)}"
         features = "".join(f"-{name}" for name in self.features)
-        bus = "" if self.bus == OWN else f"-{self.bus}"
+        bus = "" if self.bus == OWN else f"-{self.bus}" if self.baud == USUAL_BAUD else f"-{self.bus}{self.baud}"
         return (
             f"{self.engine}-{self.screen}{self.rows}{scale}-u{self.units}-r{self.rectangles}-m{self.reflections}"
             f"{quotients}{entries}-c{self.colour_bits}{culling}{features}{bus}{fixed}"

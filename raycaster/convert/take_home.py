@@ -12,14 +12,15 @@ from fnmatch import fnmatch
 from importlib.metadata import version
 from pathlib import Path
 
-from raycaster.buses import OWN
+from raycaster.buses import BUSES, OWN
 from raycaster.configuration import Configuration
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM, component
 from raycaster.convert.register_views import HEADER, write_header
 from raycaster.design.decide import OPTIONS
 from raycaster.hdl.hierarchy import Module, prefixed
-from raycaster.registers import address_bits
-from raycaster.rtl.bus.avalon_interface import size_word
+from raycaster.registers import address_bits, register_map
+from raycaster.rtl.bus.avalon_interface import engine_word, size_word
+from raycaster.serial_frames import LEAD, access, framed
 
 TOP = "ray_caster_module"
 PREFIX = "ray_caster_"
@@ -27,6 +28,9 @@ PREFIX = "ray_caster_"
 
 FILE_LIST = f"{TOP}.f"
 SMOKE_BENCH = Path(__file__).with_name("smoke_bench.v")
+BENCH_NS = 20
+"""Period of its clock."""
+
 BENCHES = "bench"
 """Folder for test benches, so that all Verilog files outside it are hardware."""
 
@@ -92,6 +96,13 @@ def _bench(config: Configuration, top: str) -> str:
         "HS_ACTIVE": int(horizontal.active_high),
         "SIZE": size_word(config),
     }
+    if BUSES[config.bus].serial:
+        registers = register_map(*config.map)
+        known = [registers[name].reset for name in ("id", "version")] + [engine_word(config), size_word(config)]
+        asked = access(registers["id"].address, read=len(known))
+        frames = {"ASKED": bytes([LEAD]) + framed(asked), "ANSWER": framed([*asked, *known])}
+        parameters["BIT_NS"] = round(BENCH_NS * config.screen_geometry.clock_hz / config.baud)
+        parameters |= {name: f"{8 * len(data)}'h{int.from_bytes(data, 'little'):x}" for name, data in frames.items()}
     text = SMOKE_BENCH.read_text().replace(TOP, top)
     for name, value in parameters.items():
         text = re.sub(rf"(parameter {name} =) 0(,?) *( //)", rf"\g<1> {value}\g<2> \g<3>", text)

@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic.dataclasses import dataclass as validated_dataclass
 from pydantic.fields import FieldInfo
 
+from raycaster.buses import BUSES, RATE_ERROR, USUAL_BAUD, most_baud
 from raycaster.complaints import as_typed, refusal
 from raycaster.configuration import FEATURES, Configuration, ConfigurationError, Options
 from raycaster.errors import listed
@@ -86,6 +87,7 @@ def decided(options: Options) -> Configuration:
         "facts": engine.facts,
     }
     config = Configuration(**{**vars(options), **decisions})
+    _check_baud(config)
     columns = config.screen_geometry.columns
     if columns % config.units and not engine.facts.whole_frames:
         divisors = ", ".join(str(n) for n in range(1, columns + 1) if columns % n == 0)
@@ -121,6 +123,19 @@ def _instead(options: Options) -> str:
         return f"choose {' or '.join(able)}"
     lacks = ", ".join(f"{name} lacks {' and '.join(lacks)}" for name, lacks in lacking.items())
     return f"no engine has all of it: {lacks}; leave something out"
+
+
+def _check_baud(config: Configuration) -> None:
+    if not BUSES[config.bus].serial:
+        if config.baud != USUAL_BAUD:
+            raise ValueError(f"baud: only a serial bus has a rate; choose {as_typed('bus', 'uart')}, or leave it out")
+        return
+    clock_hz = config.screen_geometry.clock_hz
+    if config.baud > most_baud(clock_hz):
+        raise ValueError(
+            f"baud: the design's clock of {clock_hz / 1e6:g} MHz makes at most {most_baud(clock_hz)} within "
+            f"{RATE_ERROR:.1%}, not {config.baud}"
+        )
 
 
 def _rows(options: Options, engine: Engine) -> int:

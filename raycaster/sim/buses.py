@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Access the design's registers over the buses that can replace Avalon-MM, through third-party drivers."""
+"""Access the design's registers over the buses that can replace Avalon-MM, mostly through third-party drivers."""
 
 from __future__ import annotations
 
 import logging
-from abc import abstractmethod
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from random import Random
 from typing import Any, ClassVar
 
@@ -35,28 +34,13 @@ from cocotbext.wishbone.driver import WBOp, WishboneMaster
 from raycaster.buses import BUSES, OWN
 from raycaster.configuration import Configuration
 from raycaster.sim.avalon import AvalonBus
-from raycaster.sim.register_bus import RegisterBus
+from raycaster.sim.register_bus import BridgedBus, RegisterBus
+from raycaster.sim.uart import UartBus
 
 WORD_BYTES = 4
 
 for known in BUSES.values():
     logging.getLogger(f"cocotb.bench.{known.port}").setLevel(logging.WARNING)  # they log each access
-
-
-class BridgedBus(RegisterBus):
-    """A bus with a bridge to Avalon-MM.
-
-    Attributes:
-        begins: signals that are high, or low if marked with `!`, in the first cycle of a write and of a read.
-        ends: likewise, signals of the last cycle.
-    """
-
-    begins: ClassVar[Mapping[str, tuple[str, ...]]]
-    ends: ClassVar[Mapping[str, tuple[str, ...]]]
-
-    @abstractmethod
-    def press_back(self, random: Random) -> None:
-        """Make accesses wait at random, with a separate chance for each channel."""
 
 
 def _odds(random: Random, chance: float) -> Iterator[bool]:
@@ -177,5 +161,6 @@ DRIVERS: dict[str, Callable[[HierarchyObject, Configuration], RegisterBus]] = {
     "axi4lite": Axi4LiteBus,
     "wishbone": WishboneBus,
     "apb": ApbRegisterBus,
+    "uart": UartBus,
 }
 """Drivers by value of `Configuration.bus`."""

@@ -12,6 +12,7 @@ import numpy as np
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import FallingEdge, RisingEdge, Timer
 
+from raycaster.buses import BUSES
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import describe_difference, shown
@@ -103,10 +104,14 @@ class Harness(Viewer):
         await self.wait_for_frame()
 
     async def wait_for_frame(self) -> None:
-        """With lists, wait until the frame of the committed scene is whole, so that the next StartScreen shows it."""
-        if not self.configuration.facts.whole_frames:
+        """With lists, wait until the frame of the committed scene is whole, so that the next StartScreen shows it.
+
+        On a serial bus, which takes longer than a frame, wait until the committed scene is live.
+        """
+        whole_frames = self.configuration.facts.whole_frames
+        if not whole_frames and not BUSES[self.configuration.bus].serial:
             return
-        while (await self.bus.read("control"))["commit"] or (await self.bus.read("status"))["busy"]:
+        while (await self.bus.read("control"))["commit"] or (whole_frames and (await self.bus.read("status"))["busy"]):
             self.monitor.rest()
             await Timer(self.screen.line_cycles * CLOCK_NS, "ns")
         self.monitor.forget()

@@ -4,6 +4,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from random import Random
+from typing import ClassVar
 
 from raycaster.configuration import Configuration
 from raycaster.program import scene_fields
@@ -45,3 +48,19 @@ class RegisterBus(ABC):
     async def commit(self, *, run: int = 1, reflections: int) -> None:
         """Commit the shadow, to be shown from the next StartScreen on with this many reflections."""
         await self.write("control", run=run, commit=1, reflections=reflections)
+
+
+class BridgedBus(RegisterBus):
+    """A bus with a bridge to Avalon-MM.
+
+    Attributes:
+        begins: signals that are high, or low if marked with `!`, in the first cycle of a write and of a read.
+        ends: likewise, signals of the last cycle.
+    """
+
+    begins: ClassVar[Mapping[str, tuple[str, ...]]]
+    ends: ClassVar[Mapping[str, tuple[str, ...]]]
+
+    @abstractmethod
+    def press_back(self, random: Random) -> None:
+        """Make accesses wait at random, with a separate chance for each channel."""

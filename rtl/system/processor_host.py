@@ -5,15 +5,15 @@ from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, bits_for, tied, unsigned
-from raycaster.memory_map import MEMORY_WORDS, clocks_per_bit
+from raycaster.memory_map import BAUD_RATE, MEMORY_WORDS
 from raycaster.rtl.bus.avalon_host import avalon_host
 from raycaster.rtl.bus.bus_decoder import bus_decoder
+from raycaster.rtl.bus.uart_transmitter import DATA_BITS, uart_transmitter
 from raycaster.rtl.bus.word_memory import word_memory
 from raycaster.rtl.common.interfaces import Access, ProcessorBus
 from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.system.button_port import button_port
 from raycaster.rtl.system.picorv32 import picorv32
-from raycaster.rtl.system.uart_transmitter import DATA_BITS, uart_transmitter
 
 
 @block
@@ -39,7 +39,8 @@ def processor_host(clk, reset, buttons, irq, uart_tx, avm_m0, config: Configurat
     memory_address = bus.address(2 + bits_for(MEMORY_WORDS), 2)
     tracer_address = bus.address(2 + tracer_address_bits, 2)
     byte = bus.data(DATA_BITS, 0)
-    bit_time = clocks_per_bit(config.screen_geometry.clock_hz)
+    clock_hz = config.screen_geometry.clock_hz
+    byte_waits, byte_accepted = bit(), bit()
     low, no_word = tied(0, 1), tied(0, WORD_BITS)
 
     # A single-cycle shifter and multiplier are worth their size; 64-bit counters are not.
@@ -60,8 +61,20 @@ def processor_host(clk, reset, buttons, irq, uart_tx, avm_m0, config: Configurat
     )
     port = button_port(clk, reset, buttons=buttons, irq=irq, word=buttons_word)
     transmitter = uart_transmitter(
-        clk, reset, access=uart, strobe=bus.strobe, data=byte, uart_tx=uart_tx, clocks_per_bit=bit_time
-    )
+        clk, reset, valid=byte_waits, data=byte, ready=byte_accepted, uart_tx=uart_tx, clock_hz=clock_hz,
+        baud=BAUD_RATE,
+    )  # fmt: skip
+
+    # Only a write that sends a byte has to wait for the one before; a read shows in bit 0 that one is being sent.
+    @always_comb
+    def send():
+        byte_waits.next = uart.select and bus.strobe[0]
+
+    @always_comb
+    def answer():
+        uart.ready.next = uart.select and (byte_accepted or not byte_waits)
+        uart.word.next = 0
+        uart.word.next[0] = not byte_accepted
 
     @always_comb
     def invert():

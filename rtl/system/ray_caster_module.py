@@ -21,11 +21,11 @@ from raycaster.rtl.scene.rect_rom import rect_rom
 
 
 @block
-def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi=None, wb=None, s_apb=None):
+def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi=None, wb=None, s_apb=None, uart=None):
     """Connect registers, scene memories and renderer, in one clock domain.
 
     The parts of the scene that config.fixed names are built in: they have no memory, and writes to their registers have
-    no effect. The bus is avs_s0, s_axi, wb or s_apb, as chosen by config.bus.
+    no effect. The bus is avs_s0, s_axi, wb, s_apb or uart, as chosen by config.bus.
 
     Args:
         clk: the clock, `config.screen_geometry.clock_hz` Hz.
@@ -37,6 +37,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         s_axi: `Axi4LitePort`, this block as the subordinate; its addresses count bytes.
         wb: `WishbonePort`, this block as the slave; its addresses count 32-bit words.
         s_apb: `ApbPort`, this block as the completer; its addresses count bytes.
+        uart: `UartPort`, of this block.
     """
     fixed, camera_fixed = config.fixed, bool(config.fixed and config.fixed.camera)
     reflections, background, usable = None, None, None
@@ -64,8 +65,9 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         position = camera_mem(scene_clk, reset, bus, camera_readback, camera, config)
     if config.bus in BRIDGES:
         avs_s0, name = AvalonPort(len(bus.address)), BUSES[config.bus].port
-        port = {"s_axi": s_axi, "wb": wb, "s_apb": s_apb}[name]
-        bridge = BRIDGES[config.bus].block(clk, reset, avm_m0=avs_s0, **{name: port})
+        port = {"s_axi": s_axi, "wb": wb, "s_apb": s_apb, "uart": uart}[name]
+        parameters = BRIDGES[config.bus].parameters(config)
+        bridge = BRIDGES[config.bus].block(clk, reset, avm_m0=avs_s0, **{name: port}, **parameters)
     readback = rect_readback
     if config.facts.whole_frames:
         readback = unsigned(WORD_BITS)

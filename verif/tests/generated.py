@@ -9,7 +9,7 @@ from typing import Any
 import hypothesis
 from hypothesis import strategies as st
 
-from raycaster.buses import BUSES
+from raycaster.buses import BUSES, USUAL_BAUD
 from raycaster.configuration import Facts
 from raycaster.rtl.engines import ENGINES
 from raycaster.verif.seeds import seed
@@ -45,11 +45,12 @@ ANY_OPTIONS = {
     "materials": st.booleans(),
     "patterns": st.booleans(),
     "bus": st.sampled_from(list(BUSES)),
+    "baud": st.sampled_from([USUAL_BAUD, 115_200]),
 }
 ODD = {
     "engine": "none", "units": 0, "rectangles": 129, "reflections": -1, "rows": 100, "scale": 6, "fraction_bits": 9,
     "rounding": "up", "divider_bits": 4, "colour_bits": "x", "screen": "cinema", "culling": 2, "colour": 8,
-    "bus": "pci",
+    "bus": "pci", "baud": 100,
 }  # fmt: skip
 """Values that no engine accepts, and an option that does not exist."""
 

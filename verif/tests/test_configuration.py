@@ -149,3 +149,23 @@ def test_full_hd_at_a_clock_that_chips_reach(pixels, rate):
     assert lines == [(1920, 88, 44, 148), (1080, 4, 5, 36)]
     assert screen.horizontal.active_high and screen.vertical.active_high
     assert screen.clock_hz == rate * screen.frame_cycles == rate * 2200 * 1125 // pixels
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        (
+            {"bus": "uart", "baud": 3_562_501},
+            "25 MHz makes at most 3562500 within 1.5%, not 3562501",
+        ),
+        ({"bus": "uart", "baud": 299}, "baud: "),
+        ({"bus": "apb", "baud": 9_600}, "^baud: only a serial bus has a rate; choose --bus uart, or leave it out$"),
+    ],
+)
+def test_rates_of_a_serial_bus(options, complaint):
+    """A cycle of 40 ns is 1.5 per cent of the time from a byte's beginning to the middle of its stop bit."""
+    with pytest.raises(ConfigurationError, match=complaint) as error:
+        configure(engine="span", **options)
+    assert "\n" not in str(error.value)
+    assert configure(engine="span", bus="uart", baud=3_562_500).name.endswith("-uart3562500")
+    assert configure(engine="span", bus="uart").name.endswith("-uart")

@@ -89,7 +89,7 @@ def test_pictures_of_another_screen_or_engine_are_kept_apart():
         ("sim-seed-colour-bits-4-fix-all", ["seed"], {"colour_bits": 4, "fix": "all"}),
     ):
         assert output_directory(Path("build"), engines, options) == Path("build") / expected
-    alike = {"engine", "screen", "rows", "scale", "units", "pixels", "divider_bits", "list", "culling", "bus"}
+    alike = {"engine", "screen", "rows", "scale", "units", "pixels", "divider_bits", "list", "culling", "bus", "baud"}
     assert alike | {*FEATURES, *PICTURED} == {*DESIGN_OPTIONS, "fix", "cells"}
 
 
