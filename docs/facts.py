@@ -159,6 +159,7 @@ def facts() -> dict[str, str]:
         "buses": buses(),
         "seed_cycles": seed_cycles(),
         "exact_cycles": exact_cycles(),
+        "span_rectangles": spans.rectangles(),
         "span_entries": spans.entries(),
         "span_runs": spans.runs(),
         "register_overview": register_overview(),

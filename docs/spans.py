@@ -22,13 +22,16 @@ SCENE = Scene(
     title="A floor, a wall and a mirror",
     camera=Camera(position=(60, 256, 120)),
     rect=(
-        Rectangle(name="floor", corners=((0, 0, 0), (511, 511, 0)), colour=(200, 200, 180), mirror=0),
-        Rectangle(name="wall", corners=((400, 200, 0), (400, 300, 300)), colour=(80, 160, 255), mirror=0),
+        Rectangle(name="floor", corners=((0, 0, 20), (511, 511, 20)), colour=(200, 200, 180), mirror=0),
+        Rectangle(name="wall", corners=((380, 200, 0), (380, 300, 300)), colour=(80, 160, 255), mirror=0),
         Rectangle(name="mirror", corners=((200, 400, 0), (500, 400, 200)), colour=(255, 96, 48)),
     ),
     reflections=1,
 )
 """Small enough to follow by hand. In column c of the row, rays have the slope D = (20, c - 32, -6)."""
+
+SEEN_IN_THE_MIRROR = 48, 52
+"""First and last column that see the wall in the mirror."""
 
 MEASURED = ("matte", "mirror_room", "facing_mirrors")
 """Scenes with 0, 1 and 2 reflections, for the plot of cycles."""
@@ -60,6 +63,16 @@ def name_of(entry: Entry) -> str:
     return str(SCENE.rect[entry.rect.index].name)
 
 
+def rectangles() -> str:
+    """Table of the rectangles of the example."""
+    rows = []
+    for number, rect in enumerate(SCENE.rect):
+        low, high = (tuple(map(pick, *rect.corners)) for pick in (min, max))
+        where = [str(a) if a == b else f"{a} to {b}" for a, b in zip(low, high, strict=True)]
+        rows.append([number, str(rect.name), *where, f"`{_hex(rect.colour)}`", "a half" if rect.mirror else "no"])
+    return table(["number", "rectangle", "x", "y", "z", "colour", "mirror"], rows)
+
+
 def entries() -> str:
     """Table of the entries of the example row."""
     rows = []
@@ -76,9 +89,13 @@ def runs() -> str:
     """The runs of the example row, in words."""
     start, words = 0, []
     for end, colour in told().result.runs:
-        words.append(f"{start} to {end - 1} `#{colour[0]:02x}{colour[1]:02x}{colour[2]:02x}`")
+        words.append(f"{start} to {end - 1} `{_hex(colour)}`")
         start = end
     return ", ".join(words)
+
+
+def _hex(colour: tuple[int, ...]) -> str:
+    return "#" + "".join(f"{channel:02x}" for channel in colour)
 
 
 def _shares(colour: tuple[int, ...]) -> tuple[float, ...]:
@@ -118,15 +135,18 @@ def fold_picture() -> Figure:
     for rect, colour in zip(SCENE.rect[1:], (BLUE, VERMILION), strict=True):
         (x_0, y_0, _), (x_1, y_1, _) = rect.corners
         ax.plot([x_0, x_1], [y_0, y_1], color=colour, linewidth=3)
-        ax.annotate(str(rect.name), ((x_0 + x_1) / 2, (y_0 + y_1) / 2), xytext=(6, -10), textcoords="offset points")
+        beside = (6, -10) if y_0 == y_1 else (-30, 4)
+        ax.annotate(str(rect.name), ((x_0 + x_1) / 2, (y_0 + y_1) / 2), xytext=beside, textcoords="offset points")
     plane = SCENE.rect[2].corners[0][1]
     beyond = SCENE.rect[1].corners[0][0]
-    for column in (47, 52):
+    for column in SEEN_IN_THE_MIRROR:
         slope = column - SCREEN.centre_column
         met, hit = (plane - y) / slope, (beyond - x) / SCREEN.view_distance
         at = [x + SCREEN.view_distance * t for t in (0, met, hit)]
         ax.plot(at, [y, plane, 2 * plane - y - slope * hit], color="black", linewidth=1)
         ax.plot(at[:2], [2 * plane - y, plane], color=GREY, linewidth=1, linestyle="--")
+        end = at[2], 2 * plane - y - slope * hit
+        ax.annotate(f"column {column}", end, xytext=(8, -3), textcoords="offset points")
     for place, text in ((y, "eye"), (2 * plane - y, "mirrored eye")):
         ax.plot([x], [place], "o", color="black", markersize=5)
         ax.annotate(text, (x, place), xytext=(8, -3), textcoords="offset points")
