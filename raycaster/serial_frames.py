@@ -46,6 +46,16 @@ def writes(pairs: Iterable[tuple[int, int]]) -> list[int]:
     return [word for address, words in (*runs, (commit[0], [commit[1]])) for word in access(address, words)]
 
 
+def last_access(words: Sequence[int]) -> int:
+    """Return the first word of a frame's last access, with which the answer begins."""
+    at = 0
+    while True:
+        first = words[at]
+        at += 1 + (first >> ADDRESS_BITS) % (1 << COUNT_BITS)
+        if not first >> WRITE_BIT or at >= len(words):
+            return first
+
+
 def framed(words: Sequence[int]) -> bytes:
     """Return the bytes of a frame, from its first flag to its last one."""
     plain = b"".join(word.to_bytes(WORD_BYTES, "little") for word in words)

@@ -50,6 +50,7 @@ SMALL = {bus: on_bus(TINY["seed"], bus) for bus in (OWN, *BRIDGED)}
 STARTED = {**SMALL, "exact": TINY["exact"], "span": TINY["span"]}
 """Designs that start with random registers, by bus or engine."""
 BUS_BENCH, TRAFFIC_BENCH = "verif.benches.bus_bench", "verif.benches.traffic_bench"
+UART_BENCH = "verif.benches.uart_bench"
 GATED = {"CLOCK_GATING": 1}
 """Makes clocks rest in Icarus, as they do in Verilator's models; see `clock_gate`."""
 
@@ -181,11 +182,41 @@ def test_bus(bench: Bench, bus, simulator, engine):
         ("apb", "avm_m0_byteenable = s_apb_pstrb;", "avm_m0_byteenable = 15;", "reads 0x"),
         ("apb", "s_apb_paddr[", "s_apb_pwdata[", "reads 0x"),
         ("uart", "avm_m0_writedata = shown;", "avm_m0_writedata = head;", "reads 0x"),
-        ("uart", "head <= shown;", "head <= shown ^ 1;", "got the answer"),
+        ("uart", "head <= shown;", "head <= shown ^ 1;", "SimTimeoutError"),
     ],
 )
 def test_a_fault_in_a_bridge_is_noticed(noticed: Noticed, bus, right, wrong, complaint):
     assert complaint in noticed((f"{bus}_bridge", right, wrong), BUS_BENCH, bus=bus, seeds=(seed(),))
+
+
+SERIAL = on_bus(configure(engine="span", screen="tiny", reflections=2), "uart")
+
+
+@pytest.mark.slow_sets(quick=["1"])
+@pytest.mark.parametrize("seeds", [1, 24])
+def test_serial_line(bench: Bench, seeds):
+    """Hosts that are 3 per cent fast or slow, noise, cables that are pulled, and two hosts at once: no room is torn."""
+    first = 100 * seed()
+    output = bench(UART_BENCH, SERIAL, "verilator", seeds=tuple(range(first, first + seeds)))
+    found = json.loads((output / "uart.json").read_text())
+    assert all(found.values()), found
+
+
+@pytest.mark.slow_sets(quick=["check"])
+@pytest.mark.parametrize(
+    ("module", "right", "wrong", "complaint"),
+    [
+        ("frame_reader", "(state == 32'hdebb20e3) && ", "", "pixels are wrong"),
+        ("frame_reader", "count <= 0;\n            escaped", "escaped", "no answer"),
+        ("bit_timer", "phase <= first;", "phase <= 0;", "no answer"),
+        ("uart_bridge", "stop <= words;", "stop <= words - 1;", "no answer to the next frame"),
+    ],
+    ids=["check", "resync", "middle", "commit"],
+)
+def test_a_fault_on_a_serial_line_is_noticed(bench: Bench, tmp_path, module, right, wrong, complaint):
+    files = broken(convert(SERIAL, BUILD), tmp_path, module, right, wrong)
+    with pytest.raises(SimulationError, match=complaint):
+        bench(UART_BENCH, SERIAL, "verilator", verilog=files, seeds=(1, 2))
 
 
 FAULTS = {
