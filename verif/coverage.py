@@ -121,7 +121,11 @@ def runs_of(design: Configuration, model: Model, build: Path) -> list[Run]:
     scenes_of_cases = enumerate(case.scene for case in catalogue(design.features))
     lit = tuple(number for number, scene in scenes_of_cases if scene.light and len(scene.rect) <= LIT_RECTANGLES)
     benches += [Run(model, build, "verif.soak.bench", cases=lit)] if lit else []
-    scenes = [path for path in packaged_scenes().values() if not load_scene(path).lacks(design.features)]
+    shown = {path: load_scene(path) for path in packaged_scenes().values()}
+    scenes = [
+        path for path, scene in shown.items()
+        if not scene.lacks(design.features) and len(scene.rect) <= design.rectangles
+    ]  # fmt: skip
     return [*benches, *(Run(model, build, "sim.frame_bench", scene) for scene in scenes)]
 
 

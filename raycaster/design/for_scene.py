@@ -69,7 +69,7 @@ def left_out(options: Mapping[str, Any]) -> dict[str, list[str]]:
         scene = load_scene(path)
         reason = next((reason for feature, reason in lacking.items() if scene.needs[feature]), "")
         if not reason and len(scene.rect) > held:
-            reason = f"has {len(scene.rect)} rectangles: {as_typed('rectangles', len(scene.rect))}"
+            reason = f"has more than {held} rectangles"
         if reason:
             found[reason].append(name)
     return found

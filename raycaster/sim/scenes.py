@@ -457,21 +457,22 @@ def command_parser() -> CommandParser:
 def _planned(arguments: argparse.Namespace, console: Console) -> list[Design]:
     """Plan the requested runs; by default a netlist is made of one small design, and shows only plain scenes."""
     options, gates = given_options(arguments), arguments.gates
-    paths = arguments.scene
+    paths, missing = arguments.scene, {}
     if not paths and gates:
         plain = packaged_scenes(plain=True)
         paths = list(plain.values())
         others = [name for name in packaged_scenes() if name not in plain]
         console.print(f"left out, as a netlist shows plain scenes: {', '.join(others)}", soft_wrap=True)
     elif not paths:
-        paths = packaged_for(options)
-        for reason, names in left_out(options).items():
-            console.print(f"left out, as each {reason}: {', '.join(names)}", soft_wrap=True)
+        paths, missing = packaged_for(options), left_out(options)
     small = dict(GATES_OPTIONS) if gates else {}
     engine = ENGINES.get(options.get("engine", ""))
     if engine is not None and engine.facts.whole_frames:
         small.pop("units", None)  # one unit of such an engine shows all scenes
-    return plan_runs(paths, options, small, arguments.fix, console)
+    runs = plan_runs(paths, options, small, arguments.fix, console)
+    for reason, names in missing.items():
+        console.print(f"left out, as each {reason}: {', '.join(names)}", soft_wrap=True)
+    return runs
 
 
 def verilog(arguments: argparse.Namespace) -> str:

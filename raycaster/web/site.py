@@ -17,7 +17,7 @@ from typing import Any
 from PIL import Image
 
 from raycaster.complaints import LONGEST_SHOWN
-from raycaster.configuration import FEATURES, MOST_RECTANGLES, WORLD_SIZE, Configuration
+from raycaster.configuration import FEATURES, MOST_RECTANGLES, MOST_REFLECTIONS, WORLD_SIZE, Configuration
 from raycaster.design.decide import configure
 from raycaster.design.options import CommandParser, add_build_option
 from raycaster.errors import UserError
@@ -76,15 +76,14 @@ class Model:
 
 _SPAN = {"engine": "span", "screen": "play"}
 _LOOKS = {"materials": True, "patterns": True, "reflections": 2}
+_FULL = {**_SPAN, **dict.fromkeys(FEATURES, True), "reflections": MOST_REFLECTIONS}
 ROOM_MODELS = (
     Model("plain", {**_SPAN, "turn": True}, draws=True),
     Model("looks", {**_SPAN, "turn": True, **_LOOKS}, draws=True),
     Model("lit", {**_SPAN, "turn": True, **_LOOKS, "light": True}, draws=True),
-    Model(
-        "full", {**_SPAN, "turn": True, **_LOOKS, "light": True, "reflections": 4, "rectangles": MOST_RECTANGLES},
-        draws=True,
-    ),
-)  # fmt: skip
+    Model("full", {**_FULL, "rectangles": 32}, draws=True),
+    Model("level", {**_FULL, "rectangles": MOST_RECTANGLES}, draws=True),
+)
 """Models for rooms, fastest first."""
 
 MODELS = (

@@ -12,7 +12,7 @@ from raycaster.rtl.common.widths import AXIS_BITS, column_bits, eye_bits, index_
 from raycaster.rtl.span.mirror_side import mirror_side
 from raycaster.rtl.span.records import AHEAD, BEYOND, NUMBER_BITS, U_HIGH, U_LOW, V_HIGH, V_LOW
 
-MOST_IN_A_CHAIN = 32
+MOST_IN_A_CHAIN = 64
 """Most rectangles among which a chain of choices finds the next one; with more, the chain is too long."""
 
 
@@ -143,6 +143,9 @@ def half_lines(
 
     else:
         below, first = unsigned(count), unsigned(count)
+        mask_0, mask_1, mask_2, mask_3, mask_4, mask_5, mask_6 = (
+            tied(sum(1 << i for i in range(count) if i >> place & 1), count) for place in range(7)
+        )
 
         # Subtracting 1 changes the bits up to the lowest one that is set.
         @always_comb
@@ -157,13 +160,16 @@ def half_lines(
         def find_first():
             first.next = candidates & ~below
 
+        # Each bit of the number is set if the rectangle is among those whose numbers have it.
         @always_comb
         def choose_rectangle():
-            lowest.next = 0
-            for i in range(count):
-                for place in range(index_width):
-                    if first[i] and ((i >> place) % 2 == 1):
-                        lowest.next[place] = True
+            lowest.next[0] = (first & mask_0) != 0
+            lowest.next[1] = (first & mask_1) != 0
+            lowest.next[2] = (first & mask_2) != 0
+            lowest.next[3] = (first & mask_3) != 0
+            lowest.next[4] = (first & mask_4) != 0
+            lowest.next[5] = (first & mask_5) != 0
+            lowest.next[6] = (first & mask_6) != 0
 
     @always_comb
     def see_fetch():

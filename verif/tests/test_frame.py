@@ -74,12 +74,14 @@ def test_a_hundred_scenes(bench: Bench, engine):
 @pytest.mark.parametrize("engine", ENGINES)
 def test_every_scene(bench: Bench, engine):
     """Every packaged scene on the tiny screen, edge cases included, drawn by one design per engine."""
-    scenes = packaged_for({"engine": engine})
+    most = ENGINES[engine].facts.rectangles
+    scenes = packaged_for({"engine": engine, "rectangles": most})
     assert {"matte", "corners", "degenerate", "facing_mirrors"} <= {path.stem for path in scenes}
     assert len(scenes) - len(PLAIN) >= (2 if engine == "seed" else 8)
     # The fewest units that meet the row budget compile fastest.
     size = {"units": 16} if engine == "seed" else {}
     looks = dict.fromkeys(ENGINES[engine].facts.features, True)
+    size["rectangles"] = max(12, *(len(load_scene(path).rect) for path in scenes))
     design = configure(engine=engine, screen="tiny", reflections=2, **looks, **size)
     bench("verif.soak.bench", design, "verilator", os.pathsep.join(map(str, scenes)), seeds=tuple(range(len(scenes))))
 
@@ -133,7 +135,7 @@ def test_full_size_span(bench: Bench, rows, scale, pixels, shown):
         {"engine": "span", "reflections": 4, "scale": 1, "units": 2},
         {"engine": "span", "reflections": 4, **EVERY_LOOK, "scale": 1},
         {"engine": "span", "reflections": 0, "rectangles": 1, "colour_bits": 4},
-        {"engine": "span", "rectangles": 32, "units": 5},
+        {"engine": "span", "rectangles": 128, "units": 5},
         {"engine": "span", "rectangles": 1, "reflections": 0, "colour_bits": 5, "pixels": 2},
         {"engine": "span", "reflections": 2, "turn": True, "patterns": True, "pixels": 2, "units": 3},
     ],

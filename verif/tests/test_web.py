@@ -109,11 +109,12 @@ def test_an_address_plants_a_pixel(page, site):
 
 
 TOURS = [("plain", "boxes", 5, ROOM), ("exact", "shadow_hall", 5, TINY), ("full", "lamplight", 5, ROOM)]
+TOURS += [("level", "hall_of_mirrors", 20, PLAY)]
 TOURS += [("looks", name, 20, PLAY) for name in ("checkered_hall", "kaleidoscope", "periscope", "pool", "rooftops")]
 """Models with their scenes, frames and screens; the last five scenes together need every look of a design."""
 
 
-@pytest.mark.slow_sets("looks")
+@pytest.mark.slow_sets("looks", "level")
 @pytest.mark.parametrize(("model", "name", "count", "screen"), TOURS)
 def test_a_tour(page, request, model, name, count, screen):
     """A model draws golden frames, from a scene's camera and on a walk from there with a full turn."""
