@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -35,6 +36,18 @@ SEEN_IN_THE_MIRROR = 48, 52
 
 MEASURED = ("matte", "mirror_room", "facing_mirrors")
 """Scenes with 0, 1 and 2 reflections, for the plot of cycles."""
+
+
+SIZES = (320, 640, 1280, 1920, 3840)
+"""Columns of the measured pictures."""
+
+COUNTS = (4, 8, 16, 32, 64, 128)
+"""Rectangles of the measured halls."""
+
+PILLARS = 31
+GREY_WALL = (180, 170, 160)
+CLOCKS = 25_000_000 / 60 / 240
+"""Clock cycles that a row has."""
 
 
 class Told(Drawing):
@@ -164,9 +177,9 @@ def finer(columns: int) -> Screen:
     )
 
 
-def mean_cycles(name: str, columns: int, some: int = 24) -> float:
-    """Return the mean cycles of a packaged scene's rows, of as many as this, evenly spread."""
-    scene, screen = load_scene(packaged_scenes()[name]), finer(columns)
+def mean_cycles(scene: Scene, columns: int, some: int = 24) -> float:
+    """Return the mean cycles of a scene's rows, of as many as this, evenly spread."""
+    screen = finer(columns)
     model = SpanModel.of_scene(scene, screen)
     chosen = [screen.rows * (2 * place + 1) // (2 * some) for place in range(some)]
     return sum(model.row(*row_slope(screen, scene.camera.basis, row)).cycles for row in chosen) / some
@@ -175,8 +188,55 @@ def mean_cycles(name: str, columns: int, some: int = 24) -> float:
 def measured() -> Iterator[tuple[str, int, list[tuple[int, float]]]]:
     """Yield each measured scene, its reflections, and its mean cycles per row by columns."""
     for name in MEASURED:
-        points = [(columns, mean_cycles(name, columns)) for columns in (320, 640, 1280, 1920, 3840)]
-        yield name, load_scene(packaged_scenes()[name]).reflections, points
+        scene = load_scene(packaged_scenes()[name])
+        yield name, scene.reflections, [(columns, mean_cycles(scene, columns)) for columns in SIZES]
+
+
+def pillars(count: int, reflections: int) -> Scene:
+    """Return a hall with this many rectangles: its six sides, and those of pillars, of which every third mirrors."""
+    low, high = (0, 0, 0), (511, 511, 160)
+    room = [(low, (511, 511, 0)), ((0, 0, 160), high), *sides(low, high)]
+    rects = [Rectangle(corners=corners, colour=GREY_WALL, mirror=0) for corners in room]
+    for number in range(PILLARS):
+        # Those that come first are far from each other.
+        along, aside = divmod(number * 7 % PILLARS, 6)
+        x, y = 88 + 76 * along, 38 + 82 * aside
+        mirror = 0.5 * (number % 3 == 0)
+        rects += [
+            Rectangle(corners=corners, colour=(200, 90, 60), mirror=mirror)
+            for corners in sides((x, y, 0), (x + 24, y + 24, 160))
+        ]
+    return Scene(camera=Camera(position=(8, 256, 60)), rect=tuple(rects[:count]), reflections=reflections)
+
+
+def sides(low: tuple[int, ...], high: tuple[int, ...]) -> list[tuple[Any, Any]]:
+    """Return the corners of a box's four upright sides."""
+    (x_0, y_0, z_0), (x_1, y_1, z_1) = low, high
+    ends = (((x_0, y_0), (x_0, y_1)), ((x_1, y_0), (x_1, y_1)), ((x_0, y_0), (x_1, y_0)), ((x_0, y_1), (x_1, y_1)))
+    return [((*start, z_0), (*stop, z_1)) for start, stop in ends]
+
+
+@styled
+def rectangles_picture() -> Figure:
+    """Draw the mean cycles of a row against the rectangles of its scene."""
+    figure, axes = new_figure(2.8)
+    ax: Axes = axes[0, 0]
+    for marker, reflections in zip("os", (0, 1), strict=True):
+        points = [(count, mean_cycles(pillars(count, reflections), SIZES[0])) for count in COUNTS]
+        label = f"hall of pillars, {reflections} reflection{'s' * (reflections != 1)}"
+        ax.plot(*zip(*points, strict=True), marker=marker, color=SPAN.facts.colour, markersize=4, label=label)
+    scenes = [scene for scene in map(load_scene, packaged_scenes().values()) if not scene.light]
+    cycles = [(len(scene.rect), mean_cycles(scene, SIZES[0])) for scene in scenes]
+    ax.plot(*zip(*cycles, strict=True), "x", color=BLUE, markersize=4, label="packaged scenes without a light")
+    ax.plot(COUNTS[::5], 2 * [CLOCKS], color=GREY, linestyle=":", label="60 frames of 240 rows at 25 MHz")
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    ticks(ax.xaxis)
+    ticks(ax.yaxis)
+    ax.set_xlabel("rectangles")
+    ax.set_ylabel("cycles per row of one unit")
+    figure.legend(loc="outside upper center", ncols=2)
+    return figure
 
 
 @styled
@@ -200,4 +260,9 @@ def cycles_picture() -> Figure:
 
 def pictures() -> dict[str, Figure]:
     """Return the page's pictures, by name."""
-    return {"span_row": row_picture(), "span_fold": fold_picture(), "span_cycles": cycles_picture()}
+    return {
+        "span_row": row_picture(),
+        "span_fold": fold_picture(),
+        "span_cycles": cycles_picture(),
+        "span_rectangles": rectangles_picture(),
+    }

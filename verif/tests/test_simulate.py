@@ -99,8 +99,8 @@ def test_pictures_of_another_screen_or_engine_are_kept_apart():
         ({"engine": "span", "light": "0"}, "needs a light", {"lamplight"}),
         ({"engine": "seed"}, "needs a camera that turns: the seed engine measures depth", {"pool"}),
         ({"patterns": "0"}, "needs rectangles with patterns", {"chessboard"}),
-        ({"engine": "exact"}, "", set()),
-        ({"engine": "span"}, "", set()),
+        ({"engine": "exact"}, "has more than 12 rectangles", {"hall_of_mirrors"}),
+        ({"engine": "span", "rectangles": "128"}, "", set()),
     ],
 )
 def test_scenes_that_are_left_out_have_a_reason(options, reason, among):
