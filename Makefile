@@ -8,7 +8,7 @@ endif
 PYTHON3 ?= python3
 VENV := .venv
 PYTHON := $(VENV)/bin/python
-COMMANDS := sim scenes play game web wave trace verilog fit area quartus bitstream registers report docs
+COMMANDS := sim scenes play game send walk web wave trace verilog fit area quartus bitstream registers report docs
 CHECKS := soak prove mutate gate coverage verify-all
 # The program gets command-line variables exactly as typed: `value` and `unexport` keep make from expanding them, quotes
 # keep the shell from expanding them, and one shell per recipe preserves line breaks inside them.
@@ -21,6 +21,7 @@ ARGUMENTS = $(foreach name,$(filter-out PYTHON3 PYTHON VENV,$(GIVEN)),$(call quo
 
 # Extras of pyproject.toml that a target needs in addition to the program itself.
 play game web: EXTRAS := play
+send walk: EXTRAS := board
 fit area: EXTRAS := fpga
 bitstream: EXTRAS := fpga,play
 report: EXTRAS := fpga,report

@@ -34,6 +34,8 @@ COMMANDS: Mapping[str, Command] = {
     "options": Command("raycaster.cli.design_options", "list the options of a design, such as --engine"),
     "play": Command("raycaster.play.window", "play the game, or walk through a scene, in a window", "play"),
     "game": Command("raycaster.play.game", "run a recorded game and check every frame", "play"),
+    "send": Command("raycaster.play.send", "show a room on a board with a serial port", "board"),
+    "walk": Command("raycaster.play.board_walk", "walk through a room on a board, with keys", "board"),
     "web": Command("raycaster.web.site", "write a page that runs the hardware in the browser", "play"),
     "trace": Command("raycaster.debug.trace", "follow one pixel through the hardware"),
     "wave": Command("raycaster.debug.wave", "write the waveform of some rows"),

@@ -19,7 +19,7 @@ from raycaster.convert.register_views import HEADER, write_header
 from raycaster.design.decide import OPTIONS
 from raycaster.hdl.hierarchy import Module, prefixed
 from raycaster.registers import address_bits, register_map
-from raycaster.rtl.bus.avalon_interface import engine_word, size_word
+from raycaster.rtl.bus.avalon_interface import engine_word, size_word, version_word
 from raycaster.serial_frames import LEAD, access, framed
 
 TOP = "ray_caster_module"
@@ -98,7 +98,7 @@ def _bench(config: Configuration, top: str) -> str:
     }
     if BUSES[config.bus].serial:
         registers = register_map(*config.map)
-        known = [registers[name].reset for name in ("id", "version")] + [engine_word(config), size_word(config)]
+        known = [registers["id"].reset, version_word(config), engine_word(config), size_word(config)]
         asked = access(registers["id"].address, read=len(known))
         frames = {"ASKED": bytes([LEAD]) + framed(asked), "ANSWER": framed([*asked, *known])}
         parameters["BIT_NS"] = round(BENCH_NS * config.screen_geometry.clock_hz / config.baud)

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: MIT
+"""A board on a serial port, whose design has the bus uart."""
+
+from __future__ import annotations
+
+import errno
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import serial
+from serial.tools import list_ports
+
+from raycaster.buses import USUAL_BAUD
+from raycaster.complaints import as_typed
+from raycaster.configuration import FEATURES, Configuration, ConfigurationError
+from raycaster.design.decide import configure
+from raycaster.design.options import CommandParser
+from raycaster.errors import UserError
+from raycaster.registers import register_map
+from raycaster.rtl.engines import ENGINES
+from raycaster.scene import Scene, load_scene
+from raycaster.serial_frames import (
+    ADDRESS_BITS,
+    COUNT_BITS,
+    LEAD,
+    WRITE_BIT,
+    FrameDecoder,
+    access,
+    framed,
+    last_access,
+    writes,
+)
+
+PATIENCE = 0.3
+"""Seconds for which an answer may take, besides the time on the line."""
+
+ATTEMPTS = 3
+"""How often a frame is sent that is not answered."""
+
+
+class Board:
+    """A design at a serial port, whose registers are read and written.
+
+    Args:
+        port: name of the port, or a URL of pyserial.
+        baud: bits per second.
+
+    Attributes:
+        config: a design with the same registers and features.
+
+    Raises:
+        UserError: there is no such port or no such design, in one line.
+    """
+
+    def __init__(self, port: str, baud: int = USUAL_BAUD):
+        self.port, self._baud = port, baud
+        try:
+            self._line = serial.serial_for_url(port, baud, timeout=0.01)
+        except (serial.SerialException, ValueError, OSError) as error:
+            raise UserError(f"port: {port}: {_reason(error)}") from None
+        self._decoder = FrameDecoder()
+        self.config = self._identified()
+
+    def request(self, words: Sequence[int]) -> list[int]:
+        """Send a frame, and return the words that it reads.
+
+        Raises:
+            UserError: there is no answer.
+        """
+        first = last_access(words)
+        length = 1 + (0 if first >> WRITE_BIT else (first >> ADDRESS_BITS) % (1 << COUNT_BITS))
+        data = bytes([LEAD]) + framed(words)
+        try:
+            for _ in range(ATTEMPTS):
+                self._line.write(data)
+                left = round((PATIENCE + 10 * (len(data) + 8 * length + 20) / self._baud) / 0.01)
+                for _ in range(left):
+                    for answer in self._decoder.feed(self._line.read(max(1, self._line.in_waiting))):
+                        if answer[:1] == [first] and len(answer) == length:
+                            return answer[1:]
+        except (serial.SerialException, OSError) as error:
+            raise UserError(f"port: {self.port}: {_reason(error)}") from None
+        raise UserError(
+            f"port: no answer from {self.port} at {self._baud} baud; load a bitstream made with "
+            f"{as_typed('bus', 'uart')} and this {as_typed('baud', self._baud)}, and check the cable"
+        )
+
+    def _identified(self) -> Configuration:
+        registers = register_map(1)
+        words = self.request(access(0, read=registers["table"].address + 1))
+        known = {name: registers[name].unpack(words[registers[name].address]) for name in ("engine", "size", "table")}
+        engine = known["engine"]
+        names = [name for name, each in ENGINES.items() if each.facts.code == engine["engine"]]
+        if words[registers["id"].address] != registers["id"].reset or not names:
+            raise UserError(f"port: what answers on {self.port} is no ray tracer of this version")
+        if engine["fixed"]:
+            raise UserError(
+                f"port: the design on {self.port} has its scene built in; make it without {as_typed('fix')}"
+            )
+        held = known["table"]["rectangles"] or known["size"]["rectangles"]
+        features = {name: bool(engine[name]) for name in FEATURES}
+        try:
+            return configure(
+                engine=names[0], rectangles=held, reflections=engine["reflections"], allow_underrun=True, **features
+            )
+        except ConfigurationError as error:
+            raise UserError(f"port: the design on {self.port} is none of this version: {error}") from None
+
+    def scene(self, path: Path) -> Scene:
+        """Read a scene file that the design can show.
+
+        Raises:
+            UserError: the file is wrong, or the design lacks something that the scene needs, in one line.
+        """
+        scene = load_scene(path, self.config.capacity)
+        for feature in scene.lacks(self.config.features):
+            raise UserError(
+                f"{path}: needs {FEATURES[feature]}, which the design on {self.port} lacks; build it with "
+                f"{as_typed(feature, 1)}"
+            )
+        return scene
+
+    def write(self, pairs: Iterable[tuple[int, int]]) -> None:
+        """Write words to word addresses, in one frame; the last pair commits."""
+        self.request(writes(pairs))
+
+
+def _reason(error: Exception) -> str:
+    number = getattr(error, "errno", None)
+    if number == errno.EACCES:
+        return "permission denied; join the group that owns it, usually dialout, or run it as another user"
+    if number == errno.ENOENT:
+        others = ", ".join(sorted(one.device for one in list_ports.comports())) or "none"
+        return f"there is no such port; those that were found: {others}"
+    return str(error)
+
+
+def add_port_options(parser: CommandParser) -> None:
+    """Add `--port` and `--baud`."""
+    parser.add_argument("--port", required=True, help="serial port of the board, such as /dev/ttyUSB0 or COM3")
+    parser.add_argument("--baud", type=int, default=USUAL_BAUD, help="BAUD of its design (default: %(default)s)")

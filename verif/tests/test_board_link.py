@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: MIT
+"""Rooms sent to a board, and walks through them: over a pseudo-terminal to a model of the registers at its end."""
+
+from __future__ import annotations
+
+import os
+import pty
+import re
+import threading
+import tty
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+from conftest import SMALL_SCENE, refused
+
+from raycaster.configuration import Configuration
+from raycaster.design.decide import configure
+from raycaster.errors import UserError
+from raycaster.play import board_walk, send
+from raycaster.play.board import Board
+from raycaster.play.walk import Walker
+from raycaster.program import scene_words
+from raycaster.registers import register_map
+from raycaster.rtl.bus.avalon_interface import engine_word, size_word, table_word, version_word
+from raycaster.scene import find_scene, load_scene
+from raycaster.serial_frames import FLAG, FrameDecoder, access, framed, last_access, writes
+
+SPAN = configure(engine="span", rectangles=12, turn=True, light=True, materials=True, patterns=True, bus="uart")
+
+
+class Device:
+    """The registers of a design at the other end of a line, as docs/integration.md describes them.
+
+    Attributes:
+        port: name of the serial port.
+        written: words and their addresses in the order of writing.
+        deaf: number of frames that are dropped.
+    """
+
+    def __init__(self, config: Configuration, deaf: int = 0):
+        self._end, other = pty.openpty()
+        tty.setraw(other)
+        self.port, self.written, self.deaf = os.ttyname(other), [], deaf
+        registers = register_map(*config.map)
+        words = {"id": registers["id"].reset, "version": version_word(config), "engine": engine_word(config),
+                 "size": size_word(config), "table": table_word(config)}  # fmt: skip
+        self._words = {registers[name].address: word for name, word in words.items()}
+        threading.Thread(target=self._serve, daemon=True).start()
+
+    def _serve(self) -> None:
+        decoder = FrameDecoder()
+        while True:
+            for words in decoder.feed(os.read(self._end, 256)):
+                self.deaf -= 1
+                if self.deaf < 0:
+                    # Half an answer to someone else comes first.
+                    os.write(self._end, framed([7, 8])[:6] + framed(self._carried_out(words)))
+
+    def _carried_out(self, words: list[int]) -> list[int]:
+        at = 0
+        while at < len(words):
+            first, at = words[at], at + 1
+            address, count = first & 0xFFFF, first >> 16 & 0x3FF
+            if not first >> 31:
+                return [first, *(self._words.get(address + number, 0) for number in range(count))]
+            for number in range(count):
+                self.written.append((address + number, words[at + number]))
+            at += count
+        return [first]
+
+
+def test_frames():
+    """A frame as the page on integration gives it, every odd byte, and bytes that are no frame."""
+    assert framed(access(0, read=1)) == bytes.fromhex("7E 00 00 01 00 5D EE 5F 38 7E")
+    words = [0x7E7D_7C7F, 0x7D7E_7D7E, 0, 0xFFFF_FFFF]
+    data = framed(words)
+    assert FLAG not in data[1:-1]
+    for noise in (b"", b"\x12\x7d", data[:9]):
+        assert list(FrameDecoder().feed(noise + data + data[:-1])) == [words]
+    assert list(FrameDecoder().feed(data[:5] + bytes([data[5] ^ 1]) + data[6:])) == []
+    decoder, parts = FrameDecoder(), [data[at : at + 3] for at in range(0, len(data), 3)]
+    assert [found for part in parts for found in decoder.feed(part)] == [words]
+    plain = b"".join(word.to_bytes(4, "little") for word in words)
+    sent = plain + zlib.crc32(plain).to_bytes(4, "little")
+    assert re.sub(rb"\x7d(.)", lambda pair: bytes([pair[1][0] ^ 0x20]), data[1:-1], flags=re.DOTALL) == sent
+
+
+def test_a_room_is_a_frame():
+    """Each word is written once, and the one that commits is last."""
+    for config in (SPAN, configure(engine="span", rectangles=128), configure(engine="exact")):
+        pairs = scene_words(load_scene(SMALL_SCENE), config)
+        words, found = writes(pairs), []
+        assert last_access(words) == access(*[pairs[-1][0]], [0])[0]
+        while words:
+            first, *words = words
+            count = first >> 16 & 0x3FF
+            found += [((first & 0xFFFF) + number, word) for number, word in enumerate(words[:count])]
+            words = words[count:]
+        assert sorted(found) == sorted(pairs)
+        assert found[-1] == pairs[-1]
+
+
+@pytest.mark.parametrize("deaf", [0, 2])
+def test_send(capsys, deaf):
+    """All words of a room are written; a frame that is not answered is sent again."""
+    device = Device(SPAN, deaf)
+    path = find_scene("lamplight")
+    send.main([str(path), "--port", device.port])
+    assert sorted(device.written) == sorted(scene_words(load_scene(path), SPAN))
+    assert re.search(r"lamplight\.toml: sent, \d+ of at most 12 rectangles, span engine\n", capsys.readouterr().out)
+
+
+@contextmanager
+def typed(text: str, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Let standard input be a terminal in which a text is typed."""
+    end, other = pty.openpty()
+    with open(other) as terminal:
+        monkeypatch.setattr("sys.stdin", terminal)
+        timer = threading.Timer(1, lambda: os.write(end, text.encode()))
+        timer.start()
+        yield
+        timer.join()
+
+
+def test_walk(monkeypatch, capsys):
+    """Each key moves the camera; a camera that cannot turn ignores the arrows."""
+    device, path = Device(SPAN), find_scene("lamplight")
+    with typed("wwd\x1b[Cxq", monkeypatch):
+        board_walk.main([str(path), "--port", device.port])
+    walker = Walker(load_scene(path), SPAN)
+    expected = sorted(walker.load())
+    assert sorted(device.written[: len(expected)]) == expected
+    for held in ("forward", "forward", "right", "turn right"):
+        walker.move({held})
+    last = writes(walker.writes())
+    assert [word for _, word in device.written[-len(walker.writes()) :]] == [
+        word for at, word in enumerate(last) if at not in heads(last)
+    ]
+    assert "q ends" in capsys.readouterr().out
+
+
+def heads(words: list[int]) -> set[int]:
+    """Return the places of the first words of writes."""
+    found, at = set(), 0
+    while at < len(words):
+        found.add(at)
+        at += 1 + (words[at] >> 16 & 0x3FF)
+    return found
+
+
+def refuses(config: Configuration, scene: str, *, words: tuple[str, ...] = ()) -> str:
+    device = Device(config)
+    said = refused(send.main, str(find_scene(scene)), "--port", device.port, *words)
+    assert device.written == []
+    return said
+
+
+def test_a_room_that_does_not_fit():
+    few = configure(engine="span", rectangles=2, bus="uart")
+    assert "rectangles, but the hardware holds 2" in refuses(few, "boxes")
+    plain = configure(engine="span", rectangles=32, turn=True, materials=True, patterns=True)
+    assert re.search(r"needs a light, which the design on /dev/\S+ lacks; build it with --light 1\n$",
+                     refuses(plain, "evening"))  # fmt: skip
+
+
+def test_no_board(monkeypatch, tmp_path):
+    """One line says what is missing."""
+    monkeypatch.setattr("raycaster.play.board.PATIENCE", 0.02)
+    assert re.search(r"port: \S+nothing: there is no such port; those that were found: ",
+                     refused(send.main, "boxes", "--port", str(tmp_path / "nothing")))  # fmt: skip
+    # What is sent comes back: that is no answer.
+    assert "port: no answer from loop:// at 9600 baud; " in refused(
+        send.main, "boxes", "--port", "loop://", "--baud", "9600"
+    )
+    device = Device(SPAN)
+    device._words[0] = 1
+    assert "is no ray tracer of this version" in refused(send.main, "boxes", "--port", device.port)
+    assert "walk: takes keys from a terminal" in refused(board_walk.main, "boxes", "--port", "loop://")
+
+
+def test_no_permission(monkeypatch):
+    def denied(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("serial.serial_for_url", denied)
+    with pytest.raises(UserError, match=r"^port: /dev/ttyUSB0: permission denied; join the group "):
+        Board("/dev/ttyUSB0")
