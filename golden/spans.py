@@ -605,7 +605,7 @@ class Drawing:
             return left
         if line.at(right) >= 0:
             self.result.steps["divisions"] += 1
-            self.now += self.division
+            self.now += self.division + 1
             return left + first_change(line.at(left), line.growth)
         return follows
 
@@ -614,5 +614,5 @@ class Drawing:
         if entry.rect.axis == heir.rect.axis:
             return heir.follows(entry)
         self.result.steps["orders"] += 1
-        self.now += ANSWER
+        self.now += 1 + ANSWER
         return order(entry, heir).at(column) >= 0

@@ -32,12 +32,13 @@ def line_desk(
     ask, divide = bit(), bit()
     query, division = Query(config), Division(config)
 
+    # The strobe that comes last chooses nothing.
     @always_comb
     def choose_query():
         ask.next = set_up_asks.ask or sweep_asks.ask or corner_asks.ask or surface_asks.ask
-        query.word.next = set_up_asks.query.word
-        if sweep_asks.ask:
-            query.word.next = sweep_asks.query.word
+        query.word.next = sweep_asks.query.word
+        if set_up_asks.ask:
+            query.word.next = set_up_asks.query.word
         elif corner_asks.ask:
             query.word.next = corner_asks.query.word
         elif surface_asks.ask:

@@ -53,12 +53,12 @@ def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configur
     # A number at the end of a name is the stage whose registers hold it.
     operands = (
         operand_ends(
-            clk=clk, axis=query.axis_1, from_light=query.from_light, left=query.left, right=query.right, slope=slope,
-            step=step, aim=aim, at_left=x_left, at_right=x_right, growth=x_growth, config=config,
+            clk=clk, axis=query_1.axis_1, from_light=query_1.from_light, left=query_1.left, right=query_1.right,
+            slope=slope, step=step, aim=aim, at_left=x_left, at_right=x_right, growth=x_growth, config=config,
         ),
         operand_ends(
-            clk=clk, axis=query.axis_2, from_light=query.from_light, left=query.left, right=query.right, slope=slope,
-            step=step, aim=aim, at_left=y_left, at_right=y_right, growth=y_growth, config=config,
+            clk=clk, axis=query_1.axis_2, from_light=query_1.from_light, left=query_1.left, right=query_1.right,
+            slope=slope, step=step, aim=aim, at_left=y_left, at_right=y_right, growth=y_growth, config=config,
         ),
     )  # fmt: skip
 

@@ -13,7 +13,7 @@ from raycaster.rtl.common.widths import AXIS_BITS, column_bits, span_slope_bits,
 def operand_ends(
     clk, axis, from_light, left, right, slope, step, aim, at_left, at_right, growth, config: Configuration
 ):
-    """Compute D[axis](c) = slope[axis] + c step[axis] at two columns, three cycles later.
+    """Compute D[axis](c) = slope[axis] + c step[axis] at two columns, two cycles later.
 
     Args:
         clk: the clock.
@@ -34,10 +34,10 @@ def operand_ends(
     # A column beyond the last, where all is don't care, may exceed the steepest slope.
     bits = max(slope_bits, columns + growth_bits) + 1
 
-    start, start_1, start_2 = (signed(slope_bits) for _ in range(3))
-    move, step_1, step_2 = (signed(growth_bits) for _ in range(3))
-    left_1, right_1 = signed(columns + 1), signed(columns + 1)
-    to_left, to_right, to_left_2, to_right_2 = (signed(columns + growth_bits + 1) for _ in range(4))
+    start, start_1 = signed(slope_bits), signed(slope_bits)
+    move, step_1 = signed(growth_bits), signed(growth_bits)
+    column_left, column_right = signed(columns + 1), signed(columns + 1)
+    to_left, to_right, to_left_1, to_right_1 = (signed(columns + growth_bits + 1) for _ in range(4))
     whole_left, whole_right = signed(bits + 1), signed(bits + 1)
 
     # A number at the end of a name is the stage whose registers hold it.
@@ -53,19 +53,17 @@ def operand_ends(
             if axis == 1:
                 move.next = 1
 
-    @always(clk.posedge)
-    def stage_1():
-        start_1.next = start
-        step_1.next = move
-        left_1.next = left
-        right_1.next = right
+    @always_comb
+    def extend():
+        column_left.next = left
+        column_right.next = right
 
     if config.turn:
 
         @always_comb
         def multiply():
-            to_left.next = left_1 * step_1
-            to_right.next = right_1 * step_1
+            to_left.next = column_left * move
+            to_right.next = column_right * move
 
     else:
 
@@ -73,47 +71,45 @@ def operand_ends(
         def multiply():
             to_left.next = 0
             to_right.next = 0
-            if step_1 != 0:
-                to_left.next = left_1
-                to_right.next = right_1
+            if move != 0:
+                to_left.next = column_left
+                to_right.next = column_right
 
     @always(clk.posedge)
-    def stage_2():
-        start_2.next = start_1
-        step_2.next = step_1
-        to_left_2.next = to_left
-        to_right_2.next = to_right
+    def stage_1():
+        start_1.next = start
+        step_1.next = move
+        to_left_1.next = to_left
+        to_right_1.next = to_right
 
     @always_comb
     def add():
-        whole_left.next = start_2 + to_left_2
-        whole_right.next = start_2 + to_right_2
+        whole_left.next = start_1 + to_left_1
+        whole_right.next = start_1 + to_right_1
 
     if config.light:
-        axis_1, axis_2, light_1, light_2 = unsigned(AXIS_BITS), unsigned(AXIS_BITS), bit(), bit()
+        axis_1, light_1 = unsigned(AXIS_BITS), bit()
 
         @always(clk.posedge)
         def follow():
             axis_1.next = axis
-            axis_2.next = axis_1
             light_1.next = from_light
-            light_2.next = light_1
 
         @always(clk.posedge)
-        def stage_3():
-            if not light_2:
+        def stage_2():
+            if not light_1:
                 at_left.next = whole_left[slope_bits:].signed()
                 at_right.next = whole_right[slope_bits:].signed()
-                growth.next = step_2
-            elif axis_2 == 0:
+                growth.next = step_1
+            elif axis_1 == 0:
                 at_left.next = aim.left_x
                 at_right.next = aim.right_x
                 growth.next = aim.growth_x
-            elif axis_2 == 1:
+            elif axis_1 == 1:
                 at_left.next = aim.left_y
                 at_right.next = aim.right_y
                 growth.next = aim.growth_y
-            elif axis_2 == 2:
+            elif axis_1 == 2:
                 at_left.next = aim.left_z
                 at_right.next = aim.right_z
                 growth.next = aim.growth_z
@@ -125,9 +121,9 @@ def operand_ends(
     else:
 
         @always(clk.posedge)
-        def stage_3():
+        def stage_2():
             at_left.next = whole_left[slope_bits:].signed()
             at_right.next = whole_right[slope_bits:].signed()
-            growth.next = step_2
+            growth.next = step_1
 
     return instances()

@@ -45,7 +45,7 @@ def span_control(
         painted: strobe; the level has been painted.
         emitted: strobe; the span's run has been taken.
         begin_set_up: output strobe.
-        begin_sweep: output strobe.
+        begin_sweep: output strobe, in the cycle before the chain, its winner, its column and its count are valid.
         begin_corner: output strobe; apply the corner rule.
         begin_paint: output strobe; paint the columns from column up to stop.
         begin_emit: output strobe; emit those columns.
@@ -96,7 +96,7 @@ def span_control(
     @always_comb
     def operate():
         begin_set_up.next = entering and (state == SpanState.SET_UP)
-        begin_sweep.next = entering and (state == SpanState.SWEEP)
+        begin_sweep.next = (state == SpanState.INHERIT) or ((state == SpanState.SET_UP) and set_up_done)
         begin_corner.next = (state == SpanState.SPAN) and not leaf
         begin_paint.next = entering and (state == SpanState.PAINT)
         begin_emit.next = entering and (state == SpanState.EMIT)

@@ -23,16 +23,18 @@ def sweep(
     where N[j] e[i](c) - N[i] e[j](c) - (i > j) is not negative, which is a line. On the same axis that is the order
     of N and index, without a line. In a gap nothing is seen; it lasts to the next entry, which may begin at once.
 
+    An entry is compared with the winner in the cycle after it was read, and with the present stop in the next cycle.
+
     Args:
         clk: the clock.
         reset: flag; synchronous reset to idle.
-        start: strobe; begins a pass while idle.
+        start: strobe; begins a pass while idle. All entries are in the table.
         gap: flag; nothing is seen at the column, and winner is ignored. Only entries may be met there that begin there.
         column: unsigned, `column_bits` bits; the span's first column.
         chain_stop: unsigned, `column_bits` bits; the column after the chain's last.
         winner: `Entry` that is seen at column.
-        count: unsigned, `count_bits` bits; number of the chain's entries. All inputs above are constant from start to
-            done.
+        count: unsigned, `count_bits` bits; number of the chain's entries. All inputs from gap on are constant from the
+            cycle after start to done.
         tested: `Entry`; the entry that was read last.
         asks: output `Asks`.
         answer: `Answer`.
@@ -47,16 +49,22 @@ def sweep(
     width, factor_bits = column_bits(config), line_factor_bits(config)
 
     state = Signal(SweepState.IDLE)
-    rest = unsigned(len(count))
-    left, left_1, right, last, bound, crossing, found_at = (unsigned(width) for _ in range(7))
-    found, take, settled, advance, rivalled, ordered, changes, crosses = (bit() for _ in range(8))
-    scanning, in_time, nearer, nearer_heir, same, same_heir, follows, meets = (bit() for _ in range(8))
+    begins, held, asks_rival, crossed = (bit() for _ in range(4))
+    rest, left_over = unsigned(len(count)), unsigned(len(count))
+    # The entry that is compared with stop, and how it compares with the winner.
+    present = Entry(config)
+    left, left_1, last, bound, bound_1, crossing, found_at = (unsigned(width) for _ in range(7))
+    opens, meets, nearer, same, outlasts, shortened = (bit() for _ in range(6))
+    opens_1, meets_1, nearer_1, same_1, outlasts_1 = (bit() for _ in range(5))
+    judging, in_time, sooner, found, here, ordered, changes, crosses = (bit() for _ in range(8))
+    take, settled, advance, rivalled, earlier, nearer_heir, same_heir, follows = (bit() for _ in range(8))
     rival = Entry(config)
-    asked_left, asked_right = unsigned(width), unsigned(width)
-    to_rival, to_tested = signed(factor_bits), signed(factor_bits)
+    asked_left, asked_right, right = (unsigned(width) for _ in range(3))
+    to_rival, to_present = signed(factor_bits), signed(factor_bits)
     later = bit()
     none, no_number = tied(0, 1), tied(0, NUMBER_BITS)
 
+    # The first column of interest is where both are met, as an entry begins before it ends.
     @always_comb
     def see_left():
         left.next = column
@@ -66,55 +74,91 @@ def sweep(
     @always_comb
     def compare():
         same.next = tested.axis == winner.axis
-        same_heir.next = tested.axis == heir.axis
         nearer.next = (tested.distance < winner.distance) or (
             (tested.distance == winner.distance) and (tested.index < winner.index)
         )
-        nearer_heir.next = (tested.distance < heir.distance) or (
-            (tested.distance == heir.distance) and (tested.index < heir.index)
-        )
+        meets.next = tested.start < winner.stop
+        outlasts.next = tested.stop > winner.stop
 
-    # An entry that neither begins too late nor has ended; it may also begin where the winner ends.
+    # An entry opens if it has not ended; in a gap, if it has not begun before.
+    @always_comb
+    def see_open():
+        opens.next = (tested.index != winner.index) and (tested.stop > column)
+        if gap:
+            opens.next = tested.start >= column
+
+    @always_comb
+    def count_down():
+        left_over.next = rest
+        if begins:
+            left_over.next = count
+
+    @always(clk.posedge)
+    def keep_present():
+        begins.next = start and not reset
+        if reset:
+            held.next = False
+        elif begins or advance:
+            held.next = left_over != 0
+            rest.next = left_over
+            if left_over != 0:
+                rest.next = left_over - 1
+            present.word.next = tested.word
+            left_1.next = left
+            opens_1.next = opens
+            meets_1.next = meets
+            nearer_1.next = nearer
+            same_1.next = same
+            outlasts_1.next = outlasts
+
+    # An entry that does not begin too late; it may also begin where the winner ends.
     @always_comb
     def see_time():
-        scanning.next = (state == SweepState.SCAN) and (rest != 0)
-        in_time.next = (tested.index != winner.index) and (left < tested.stop) and (left <= stop)
-        follows.next = (stop == winner.stop) and (stop < tested.stop)
-        meets.next = left < winner.stop
+        judging.next = (state == SweepState.SCAN) and held
+        in_time.next = opens_1 and (left_1 <= stop)
+        sooner.next = left_1 < stop
+        follows.next = outlasts_1 and not shortened
 
     @always_comb
+    def compare_heir():
+        same_heir.next = present.axis == heir.axis
+        nearer_heir.next = (present.distance < heir.distance) or (
+            (present.distance == heir.distance) and (present.index < heir.index)
+        )
+
+    @always(clk.posedge)
     def see_crossing():
+        crossed.next = answer.divided
         crossing.next = (left_1 + answer.columns) % (1 << width)
 
-    # The column at which the tested entry would follow, if it does.
+    # The column at which the entry would follow, if it does: here, at left_1, after a division, or at stop.
     @always_comb
     def find():
         found.next = False
-        found_at.next = stop
+        here.next = False
         ordered.next = False
-        if scanning:
-            if gap:
-                found.next = (tested.start >= column) and (tested.start <= stop)
-                found_at.next = tested.start
-            elif in_time and meets:
-                if not same:
-                    ordered.next = True
-                elif nearer:
-                    found.next = True
-                    found_at.next = left
-                else:
-                    found.next = follows
-            else:
+        if judging:
+            if gap or not meets_1:
                 found.next = in_time
+                here.next = True
+            elif same_1:
+                found.next = in_time and (nearer_1 or follows)
+                here.next = nearer_1
+            else:
+                ordered.next = in_time
         elif (state == SweepState.ORDER) and answer.valid:
-            if answer.left >= 0:
-                found.next = True
-                found_at.next = left_1
-            elif answer.right < 0:
-                found.next = follows
-        elif (state == SweepState.CROSS) and answer.divided:
-            found.next = True
+            here.next = answer.left >= 0
+            found.next = (answer.left >= 0) or ((answer.right < 0) and follows)
+        elif state == SweepState.CROSS:
+            found.next = crossed
+
+    @always_comb
+    def find_column():
+        found_at.next = left_1
+        if state == SweepState.CROSS:
             found_at.next = crossing
+        elif not here:
+            found_at.next = stop
 
     @always_comb
     def see_change():
@@ -125,13 +169,19 @@ def sweep(
         crosses.next = (state == SweepState.ORDER) and answer.valid and changes
         asks.divide.next = (state == SweepState.ORDER) and answer.valid and changes
 
+    @always_comb
+    def see_earlier():
+        earlier.next = here and sooner
+        if state == SweepState.CROSS:
+            earlier.next = crossing < stop
+
     # Two that follow at the same column are compared there.
     @always_comb
     def settle():
         take.next = False
         rivalled.next = False
         if found:
-            if (found_at < stop) or not inherited:
+            if earlier or not inherited:
                 take.next = True
             elif same_heir:
                 take.next = nearer_heir
@@ -144,23 +194,24 @@ def sweep(
     def see_settled():
         settled.next = False
         if state == SweepState.SCAN:
-            settled.next = not ordered
+            settled.next = held and not ordered
         elif state == SweepState.CROSS:
-            settled.next = answer.divided
+            settled.next = crossed
         elif state != SweepState.IDLE:
             settled.next = answer.valid
 
     @always_comb
     def see_advance():
-        advance.next = settled and (rest != 0) and not (rivalled or crosses)
-        done.next = (state == SweepState.SCAN) and (rest == 0)
+        advance.next = settled and not (rivalled or crosses)
+        done.next = (state == SweepState.SCAN) and (rest == 0) and not (held or begins)
 
     @always_comb
     def fetch():
-        read.next = start or advance
+        read.next = start or begins or advance
 
     @always(clk.posedge)
     def step():
+        asks_rival.next = rivalled and not reset
         if reset:
             state.next = SweepState.IDLE
         elif start or advance:
@@ -180,33 +231,30 @@ def sweep(
             place.next = 0
         elif read:
             place.next = (place + 1) % (1 << len(place))
-        if start:
-            rest.next = count
-        elif advance:
-            rest.next = rest - 1
 
+    # bound is the last column in which winner and entry may be met, or the one after it if the winner is still there.
     @always(clk.posedge)
     def keep():
-        if start:
+        if begins:
             inherited.next = False
+            shortened.next = False
             stop.next = winner.stop
+            bound.next = bound_1
             if gap:
                 stop.next = chain_stop
         elif take:
             inherited.next = True
+            heir.word.next = present.word
             if found:
                 stop.next = found_at
-            heir.word.next = tested.word
-        if scanning:
-            left_1.next = left
+            if found and earlier:
+                shortened.next = True
+                bound.next = found_at
 
-    # The last column in which both may be seen, up to the one after the span if the winner is still there.
     @always_comb
     def see_bounds():
-        last.next = (tested.stop - 1) % (1 << width)
-        bound.next = (stop - 1) % (1 << width)
-        if stop < winner.stop:
-            bound.next = stop
+        bound_1.next = (winner.stop - 1) % (1 << width)
+        last.next = (present.stop - 1) % (1 << width)
 
     @always_comb
     def see_right():
@@ -217,9 +265,9 @@ def sweep(
     @always_comb
     def choose_rival():
         rival.word.next = winner.word
-        asked_left.next = left
+        asked_left.next = left_1
         asked_right.next = right
-        if rivalled:
+        if state == SweepState.RIVAL:
             rival.word.next = heir.word
             asked_left.next = stop
             asked_right.next = stop
@@ -227,20 +275,20 @@ def sweep(
     @always_comb
     def extend():
         to_rival.next = rival.distance
-        to_tested.next = tested.distance
-        later.next = tested.index > rival.index
+        to_present.next = present.distance
+        later.next = present.index > rival.index
 
     asked = asks.query.joined(
-        from_light=none, left=asked_left, right=asked_right, strict=later, axis_1=tested.axis, back_1=tested.back,
-        factor_1=to_rival, axis_2=rival.axis, back_2=rival.back, factor_2=to_tested, half_line=none,
+        from_light=none, left=asked_left, right=asked_right, strict=later, axis_1=present.axis, back_1=present.back,
+        factor_1=to_rival, axis_2=rival.axis, back_2=rival.back, factor_2=to_present, half_line=none,
         last=none, number=no_number,
     )  # fmt: skip
-    crossed = asks.division.joined(value=answer.left, growth=answer.growth)
+    dividend = asks.division.joined(value=answer.left, growth=answer.growth)
 
     @always_comb
     def request():
-        asks.ask.next = ordered or rivalled
+        asks.ask.next = ordered or asks_rival
         asks.query.word.next = asked
-        asks.division.word.next = crossed
+        asks.division.word.next = dividend
 
     return instances()

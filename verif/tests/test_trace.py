@@ -262,7 +262,7 @@ FAULTS = {
         ("first_change", "columns <= quotient + 1", "columns <= quotient"),
         ("clipper", "if (rises && (border > low))", "if (!rises && (border > low))"),
         ("entry_table", "memory[write_address] <= entry_word", "memory[write_address] <= entry_word ^ 'h100"),
-        ("sweep", "follows = (stop == winner_stop)", "follows = 0 && (stop == winner_stop)"),
+        ("sweep", "follows = outlasts_1", "follows = 0 && outlasts_1"),
         ("span_control", "column <= stop", "column <= stop - 1"),
         ("fold", "whole = eye_a + twice", "whole = eye_a - twice"),
         ("quarters_of", "sum_2 = once + twice", "sum_2 = once"),

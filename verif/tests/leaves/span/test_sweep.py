@@ -82,7 +82,7 @@ def test_sweep(count, leaf_of, random):
             assert stop == COLUMNS or nearest(entries, stop) == heir, "the model is wrong"
             inputs = {"begin_sweep": 1, "gap": int(winner is None), "column": column}
             leaf.case(inputs | (entry_inputs(winner, slope, "winner") if winner else {}))
-            leaf.stimulus += [{"begin_sweep": 0}] * (drawing.now - 1)
+            leaf.stimulus += [{"begin_sweep": 0}] * drawing.now
             leaf.expected[leaf.cycle - 2] |= {"sweep_done": 0}
             leaf.expect({"sweep_done": 1, "swept_stop": stop, "inherited": int(heir is not None)})
             if heir:
