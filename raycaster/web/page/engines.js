@@ -22,7 +22,8 @@ tabs.engines = {
     const compute = async (side, model) => {
       statuses[side].textContent = "computing";
       const machine = (machines[side] = await Machine.instead(machines[side], model));
-      await machine.call("load", readScene(sceneText(selects.scene.value), "", machine.design.rectangles));
+      const name = selects.scene.value;
+      await machine.call("load", readScene(sceneText(name), name, machine.design.rectangles));
       drawn[side] = await machine.frame();
     };
 
