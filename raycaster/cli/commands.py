@@ -82,7 +82,7 @@ def overview(*, from_make: bool = False) -> str:
     else:
         head = "raycaster sim mirror_room      raycaster COMMAND --help explains a command"
         lines.append(("verify", ", ".join(checks)))
-    return "\n".join([head, "", *(f"  {name:<11} {purpose}".rstrip() for name, purpose in lines)])
+    return "\n".join([head, *(f"  {name:<11} {purpose}".rstrip() for name, purpose in lines)])
 
 
 def verify_overview() -> str:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.complaints import as_typed
-from raycaster.configuration import FEATURES, Configuration, ConfigurationError
+from raycaster.configuration import FEATURES, MOST_RECTANGLES, Configuration, ConfigurationError
 from raycaster.design.decide import OPTIONS, configure
 from raycaster.errors import UserError
 from raycaster.rtl.engines import ENGINES
@@ -78,7 +78,8 @@ def left_out(options: Mapping[str, Any]) -> dict[str, list[str]]:
 def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> Design:
     """Read a scene and choose its hardware; rows, reflections and features that are not given come from the scene.
 
-    If no engine is given, the first one that can show the scene and hold the rectangles is chosen.
+    A scene with more rectangles than a default design has gets a design that holds them. If no engine is given, the
+    first one that can show the scene and hold the rectangles is chosen.
 
     Args:
         path: the scene file.
@@ -93,6 +94,8 @@ def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, An
     if "rows" not in chosen and chosen.get("screen", "vga") == "vga":
         chosen["rows"] = scene.rows
     chosen.setdefault("reflections", scene.reflections)
+    if OPTIONS["rectangles"].default < len(scene.rect) <= MOST_RECTANGLES:
+        chosen.setdefault("rectangles", len(scene.rect))
     needed = scene.lacks(())
     able = [name for name, engine in ENGINES.items() if not scene.lacks(engine.facts.features)]
     large = [name for name in able if held_by(chosen) <= ENGINES[name].facts.rectangles]

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.configuration import WORLD_SIZE, Configuration
-from raycaster.design.for_scene import Design, design_for, held_by
+from raycaster.design.for_scene import Design, design_for
 from raycaster.play.system import play_options
 from raycaster.program import basis_fields, light_fields, scene_words
 from raycaster.registers import register_map
 from raycaster.rtl.engines import ENGINES
-from raycaster.scene import Camera, Light, Scene, load_scene
+from raycaster.scene import Camera, Light, Scene
 
 STEP = 3.0
 """World units per frame that a held button moves the camera."""
@@ -49,8 +49,6 @@ def design_to_walk(path: Path, options: Mapping[str, Any]) -> Design:
     engine = ENGINES.get(chosen["engine"])
     if engine and "turn" in engine.facts.features:
         chosen = {"turn": True} | chosen
-    if engine and held_by(options) < (count := len(load_scene(path).rect)) <= engine.facts.rectangles:
-        chosen = {"rectangles": count} | chosen
     return design_for(path, options, chosen)
 
 
