@@ -18,8 +18,8 @@ from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.play import game, window
 from raycaster.play.machine import Machine, build_machine
-from raycaster.play.walk import Walker
-from raycaster.scene import UNTURNED, Camera, load_scene
+from raycaster.play.walk import Walker, design_to_walk
+from raycaster.scene import UNTURNED, Camera, load_scene, packaged_scenes
 
 MIRROR_ROOM = ROOT / "raycaster" / "scenes" / "mirror_room.toml"
 
@@ -102,6 +102,24 @@ def test_a_light_goes_around_the_room(tmp_path, capsys):
     assert all(0 <= value < 512 for place in places for value in place)
     with pytest.raises(UserError, match="seed engine"):
         game.main(["evening", "--screen", "tiny", "--engine", "seed", "--output", str(tmp_path / "none")])
+
+
+@pytest.mark.slow
+def test_a_walk_through_a_level():
+    """The design has room for it, unless a size is given; each picture of a walk out of the court is right."""
+    path, options = packaged_scenes()["hall_of_mirrors"], {"screen": "tiny", "units": "1"}
+    with pytest.raises(UserError, match=r"113 rectangles, but the hardware holds 12; .* --rectangles 113$"):
+        design_to_walk(path, {**options, "rectangles": "12"})
+    design = design_to_walk(path, options)
+    config = design.configuration
+    assert (config.rectangles, config.units, config.turn) == (113, 1, True)
+    walker = Walker(design.shown, config)
+    with Machine(build_machine(config, BUILD, processor=False), config) as machine:
+        machine.show(walker.load())
+        for _ in range(8):
+            for held in (["forward"], ["forward"], ["forward", "turn right"]):
+                walker.move(held)
+            assert machine.show(walker.writes()).wrong(config) == 0
 
 
 def test_a_walk_goes_where_it_looks():
