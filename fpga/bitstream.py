@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """`raycaster bitstream`: make a bitstream for a board, using only tools from pip.
 
-The board's video output shows one scene, whose camera the buttons move, or the game, played with the buttons. No
-bitstream has run on a board; instead, the video output is decoded in simulation, and every pixel is compared with the
-golden model.
+The board's video output shows one scene, whose camera the buttons move; with the bus uart, the rooms that come over its
+serial port; or the game, played with the buttons. No bitstream has run on a board; instead, the video output is decoded
+in simulation, and every pixel is compared with the golden model.
 """
 
 from __future__ import annotations
@@ -24,10 +24,11 @@ from typing import Any, TypeVar
 
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
+from raycaster.buses import BUSES, OWN
 from raycaster.complaints import as_typed
 from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.convert.digest import files_digest
-from raycaster.convert.write import write_dvi_encoder, write_scene_system, write_system
+from raycaster.convert.write import write_dvi_encoder, write_scene_system, write_serial_system, write_system
 from raycaster.design.decide import configure
 from raycaster.design.for_scene import Design, ProcessorDesign
 from raycaster.design.options import CommandParser, add_configuration_options, add_scene_argument, given_options
@@ -39,6 +40,7 @@ from raycaster.fpga.netlist import write_netlist
 from raycaster.golden.frames import check_list, scene_rows
 from raycaster.memory_map import MEMORY_WORDS, PROGRAM_FILE
 from raycaster.output import Console, Table, replaced
+from raycaster.rtl.bus.uart_bridge import longest_frame
 from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.runs.outcomes import add_keep_option, keep
@@ -101,6 +103,10 @@ def write_project(board: OpenBoard, design: Design | ProcessorDesign, directory:
     if isinstance(design, ProcessorDesign):
         files, kind = write_system(config, directory / "system"), "game"
         shutil.copy(design.path, directory / PROGRAM_FILE)
+    elif BUSES[config.bus].serial:
+        if "serial" not in board.inputs:
+            raise UserError(f"bus: the {board.title} has no serial port; leave out {config.bus}")
+        files, kind = write_serial_system(config, directory / "system"), "serial"
     else:
         files, kind = write_scene_system(config, design.shown, directory / "system"), "scene"
     if board.video == "dvi":
@@ -160,7 +166,7 @@ def top_of(board: OpenBoard, config: Configuration) -> str:
     """Generate the top, which only connects the board's pins."""
     assigned = "\n".join(f"assign {name} = {value};" for name, value in board.outputs.items())
     parameters, wires = VIDEO[board.video]
-    connected = ("run", "buttons", "locked", "serial", *re.findall(r"\w+(?=[,;])", wires))
+    connected = ("run", "buttons", "serial_in", "locked", "serial", *re.findall(r"\w+(?=[,;])", wires))
     instance = "".join(f",\n    .{name}({name})" for name in connected)
     return f"""// SPDX-License-Identifier: MIT
 // Pins of the {board.title}.
@@ -175,6 +181,7 @@ wire locked, serial;
 {wires}
 wire run = !({board.pressed("reset")});
 wire [{len(BUTTONS) - 1}:0] buttons = {board.buttons};
+wire serial_in = {board.inputs.get("serial", "1'b1")};
 
 {assigned}
 
@@ -302,6 +309,8 @@ def _design(arguments: argparse.Namespace, board: OpenBoard, console: Console) -
     options = given_options(arguments)
     if not arguments.game:
         path = arguments.scene or find_scene("mirror_room")
+        if arguments.fix and BUSES[options.get("bus", OWN)].serial:
+            raise UserError(f"fix: the board shows what comes over its serial port; leave out {as_typed('fix')}")
         design = with_list(board, design_of(path, options, arguments.fix, console, **board.configuration), options)
         config = design.configuration
         if config.facts.whole_frames:
@@ -327,7 +336,9 @@ def with_list(board: OpenBoard, design: AnyDesign, options: Mapping[str, Any]) -
     if not config.facts.whole_frames:
         return design
     words, (places, width) = MEMORY_WORDS, FLOWS[board.flow].block
-    program = -(-words // places) * -(-WORD_BITS // width) if isinstance(design, ProcessorDesign) else 0
+    if not isinstance(design, ProcessorDesign):
+        words = longest_frame(config) if BUSES[config.bus].serial else 0
+    program = -(-words // places) * -(-WORD_BITS // width)
     most = largest_list(board, config, OTHER_MEMORIES + program)
     rows = config.screen_geometry.rows
     if most < rows or ("list" in options and config.list > most):

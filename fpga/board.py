@@ -76,8 +76,9 @@ class BoardSignal(_Strict):
 class Board(_Strict):
     """Description of a board: the part that all kinds share. The top of its designs is generated.
 
-    `inputs` and `outputs` are Verilog. An input is a bit that is high while one of `BUTTONS`, or `reset`, is pressed.
-    An output is an expression of the signals of the modules in the top.
+    `inputs` and `outputs` are Verilog. An input is a bit that is high while one of `BUTTONS`, or `reset`, is pressed;
+    the input `serial` is the line from the USB chip. An output is an expression of the signals of the modules in the
+    top.
     """
 
     directory: Path
@@ -105,8 +106,8 @@ class Board(_Strict):
             if name not in self.pins:
                 raise ValueError(f"signals: {name} is missing, but is one of the board's clocks")
         for name, value in self.inputs.items():
-            if name not in ("reset", *BUTTONS):
-                raise ValueError(f"inputs: {name} is not one of reset, {', '.join(BUTTONS)}")
+            if name not in ("reset", *BUTTONS, "serial"):
+                raise ValueError(f"inputs: {name} is not one of reset, {', '.join(BUTTONS)}, serial")
             if value.removeprefix("~") not in self.pins or _signal(value) in self.outputs:
                 raise ValueError(f"inputs: {name}: {value} is not a bit of a signal here, or is an output")
         for name in self.outputs:

@@ -5,8 +5,9 @@ module dvi_board (
     input  wire       clk_in,           // the oscillator
     input  wire       run,              // low resets everything, like an unlocked PLL
     input  wire [5:0] buttons,          // down, up, right, left, back, forward
+    input  wire       serial_in,        // to here
     output wire       locked,
-    output wire       serial,
+    output wire       serial,           // from here
     output wire [3:0] link_p,           // clock, red, green, blue
     output wire [3:0] link_n
 );
@@ -32,6 +33,7 @@ board_design shown (
     .clk(clk),
     .ready(locked & run),
     .buttons(buttons),
+    .uart_rx(serial_in),
     .uart_tx(serial),
     .vga_r(vga_r),
     .vga_g(vga_g),

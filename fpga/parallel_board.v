@@ -8,8 +8,9 @@ module parallel_board #(
     input  wire clk_in,                     // the oscillator
     input  wire run,                        // low resets everything, like an unlocked PLL
     input  wire [5:0] buttons,              // down, up, right, left, back, forward
+    input  wire serial_in,                  // to here
     output wire locked,
-    output wire serial,
+    output wire serial,                     // from here
     output wire [COLOUR_BITS-1:0] vga_r,
     output wire [COLOUR_BITS-1:0] vga_g,
     output wire [COLOUR_BITS-1:0] vga_b,
@@ -35,6 +36,7 @@ board_design #(.COLOUR_BITS(COLOUR_BITS)) shown (
     .clk(clk),
     .ready(locked & run),
     .buttons(buttons),
+    .uart_rx(serial_in),
     .uart_tx(serial),
     .vga_r(vga_r),
     .vga_g(vga_g),

@@ -7,6 +7,7 @@ module board_design #(
     input  wire clk,
     input  wire ready,
     input  wire [5:0] buttons,              // down, up, right, left, back, forward
+    input  wire uart_rx,                    // not read
     output wire uart_tx,
     output wire [COLOUR_BITS-1:0] vga_r,
     output wire [COLOUR_BITS-1:0] vga_g,

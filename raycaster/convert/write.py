@@ -18,10 +18,11 @@ from raycaster.hdl.internals import Block, EnumItemType, states_of
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.output import replaced
 from raycaster.rtl.dvi.dvi_encoder import dvi_encoder
-from raycaster.rtl.system.ports import dvi_ports, module_ports, scene_system_ports, system_ports
+from raycaster.rtl.system.ports import dvi_ports, module_ports, scene_system_ports, serial_system_ports, system_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.rtl.system.ray_caster_system import ray_caster_system
 from raycaster.rtl.system.scene_system import scene_system
+from raycaster.rtl.system.serial_system import serial_system
 from raycaster.scene import Scene
 
 
@@ -64,6 +65,11 @@ def write_scene_system(config: Configuration, scene: Scene, directory: Path) -> 
     return _write(
         config, directory, lambda: elaborated(scene_system, **scene_system_ports(config), config=config, scene=scene)
     )
+
+
+def write_serial_system(config: Configuration, directory: Path) -> list[Path]:
+    """Write `serial_system`, for a configuration with the bus uart."""
+    return _write(config, directory, lambda: elaborated(serial_system, **serial_system_ports(config), config=config))
 
 
 def write_system(config: Configuration, directory: Path, program: str = PROGRAM_FILE) -> list[Path]:

@@ -11,6 +11,7 @@ from raycaster.hdl.signals import bit, unsigned
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.registers import address_bits
 from raycaster.rtl.bus.buses import BRIDGES
+from raycaster.rtl.bus.uart_bridge import UartPort
 from raycaster.rtl.common.interfaces import AvalonPort, Vga
 from raycaster.rtl.dvi.tmds_encoder import SYMBOL_BITS
 from raycaster.rtl.system.scene_player import BUTTONS
@@ -27,6 +28,11 @@ def module_ports(config: Configuration) -> dict[str, Any]:
 def scene_system_ports(config: Configuration) -> dict[str, Any]:
     """Return the ports of scene_system."""
     return {"clk": bit(), "ready": bit(), "buttons": unsigned(len(BUTTONS)), "vga": Vga(config.port_bits)}
+
+
+def serial_system_ports(config: Configuration) -> dict[str, Any]:
+    """Return the ports of serial_system."""
+    return {"clk": bit(), "ready": bit(), "uart": UartPort(address_bits(*config.map)), "vga": Vga(config.port_bits)}
 
 
 def system_ports(config: Configuration) -> dict[str, Any]:

@@ -15,12 +15,13 @@ module board_bench;
     reg reset = 1'b1;
     reg [5:0] buttons = 6'b000000;      // down, up, right, left, back, forward
     reg recording = 1'b0;
+    reg serial_in = 1'b1;
     reg [MASKS*6-1:0] pressed;
     integer values, again, each, late_ns, file, count, text, place;
     realtime started;
     reg [7:0] character;
 
-    device device (.reset(reset), .buttons(buttons));
+    device device (.reset(reset), .buttons(buttons), .serial_in(serial_in));
 
     // Samples each bit in its middle, timed from the start bit.
     initial begin
@@ -33,6 +34,20 @@ module board_bench;
             #SERIAL_BIT_NS $fwrite(text, "%c", character);
         end
     end
+
+    // +sends: number of bytes in sends.txt that a computer sends to the serial port; +bit_ps: time of a bit.
+    reg [7:0] sent [0:4095];
+    integer sends, bit_ps, byte_at, bit_at;
+    initial
+        if ($value$plusargs("sends=%d", sends) && $value$plusargs("bit_ps=%d", bit_ps)) begin
+            $readmemh("sends.txt", sent, 0, sends - 1);
+            wait (recording);
+            for (byte_at = 0; byte_at < sends; byte_at = byte_at + 1)
+                for (bit_at = 0; bit_at < 10; bit_at = bit_at + 1) begin
+                    serial_in = bit_at == 0 ? 1'b0 : bit_at == 9 ? 1'b1 : sent[byte_at][bit_at - 1];
+                    #(bit_ps / 1000.0);
+                end
+        end
 
     // +values: number of values to record; +again: to record after another reset, 0 for no other reset; +pressed:
     // buttons, the first ones lowest, each for a number of values, +each; +late_ns: extra duration of reset.

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import Configuration, need_avalon
 from raycaster.design.for_scene import Design
 from raycaster.design.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.errors import UserError
@@ -122,6 +122,7 @@ def watch(
     again: int = 0,
     placed: bool = False,
     blank: int = 0,
+    sends: bytes = b"",
 ) -> list[np.ndarray]:
     """Simulate the board and return the first frames with a picture that its monitor sees after reset.
 
@@ -140,6 +141,7 @@ def watch(
         again: number of frames to record after a second reset, in the middle of a frame; they follow the others.
         placed: True if the Verilog is a netlist; then nothing checks when the symbols of a DVI link are sampled.
         blank: number of frames after each reset that have no picture yet; these are not among the others.
+        sends: bytes that a computer sends to the serial port from the first frame on, at the design's rate.
 
     Returns:
         The frames, each uint8 (visible lines, visible pixels, 3).
@@ -161,6 +163,10 @@ def watch(
         values[0] += frame // 2
     arguments = [f"+values={values[0]}", f"+again={values[1] if again else 0}", f"+pressed={pressed}"]
     arguments += [f"+each={frame}", f"+late_ns={late_ns}"]
+    if sends:
+        directory.mkdir(parents=True, exist_ok=True)
+        (directory / "sends.txt").write_text("".join(f"{byte:02x}\n" for byte in sends))
+        arguments += [f"+sends={len(sends)}", f"+bit_ps={round(1e12 / design.baud)}"]
     rates, recorded = _record(board, sources, design, directory, simulator, arguments, placed)
     seen = []
     for count, rate, lines in zip((frames, again), rates, recorded, strict=False):
@@ -356,6 +362,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     board = find_board(arguments.board, OpenBoard)
     console = Console()
     design = design_of(arguments.scene, given_options(arguments), arguments.fix, console, **board.configuration)
+    need_avalon(design.configuration, "a board with a scene")
     output = arguments.output / board.name / design.name
     emptied(output)
     try:

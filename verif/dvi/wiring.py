@@ -32,6 +32,7 @@ class Wiring:
         mhz: frequency of the oscillator.
         pressed: pin of each button and of reset; `~` if it is low while pressed.
         outputs: pins of the outputs by role, from bit 0 on.
+        heard: pin of the line from the USB chip, if there is one.
         lit: meaning of each other output, by pin: a level, `locked`, or the pin of a button; `~` inverts it.
         options: pins by their standard and further options, as the pin file has them.
     """
@@ -43,6 +44,7 @@ class Wiring:
     outputs: Mapping[str, str]
     options: Mapping[str, str]
     lit: Mapping[str, str] = field(default_factory=dict)
+    heard: str = ""
 
     @property
     def pins(self) -> dict[str, str]:
@@ -60,11 +62,12 @@ WIRING = {
         mhz=25,
         pressed=dict(zip(_KEYS, ("~D6", "R18", "V1", "R1", "T1", "U1", "H16"), strict=True)),
         outputs={"link": "A16 A14 A12 A17", "serial": "L4"},
+        heard="M1",
         lit={"B2": "R1", "C2": "T1", "C1": "R18", "D2": "V1", "D1": "U1", "E2": "H16", "E1": "0", "H3": "locked",
              "L2": "1"},
         options={
             "LVCMOS33 PULLMODE=NONE": "G2",
-            "LVCMOS33 PULLMODE=UP": "D6",
+            "LVCMOS33 PULLMODE=UP": "D6 M1",
             "LVCMOS33 PULLMODE=DOWN": "R1 T1 R18 V1 U1 H16",
             "LVCMOS33 DRIVE=4 PULLMODE=NONE": "B2 C2 C1 D2 D1 E2 E1 H3 L2",
             "LVCMOS33 DRIVE=4 PULLMODE=UP": "L4",
@@ -77,10 +80,11 @@ WIRING = {
         mhz=50,
         pressed=dict(zip(_KEYS[1:], ("~P2", "~M2", "~C4", "~C5", "~R3", "~P3"), strict=True)),
         outputs={"link": "R13 R15 P16 R12", "serial": "K15"},
+        heard="K16",
         lit={"E13": "~R3", "D14": "~P3", "E12": "~P2", "C13": "~M2", "D13": "locked"},
         options={
             "LVCMOS33 PULLMODE=NONE": "M1",
-            "LVCMOS33 PULLMODE=UP": "C4 C5 R3 P3 P2 M2",
+            "LVCMOS33 PULLMODE=UP": "C4 C5 R3 P3 P2 M2 K16",
             "LVCMOS33 DRIVE=4": "E13 D14 E12 C13 D13 K15",
             "LVCMOS33D DRIVE=4": "R13 R15 P16 R12",
         },
@@ -91,10 +95,11 @@ WIRING = {
         mhz=25,
         pressed=dict(zip(_KEYS[1:], ("~A18", "~A19", "~C17", "~B18", "~B20", "~F20"), strict=True)),
         outputs={"link": "G19 E20 C20 J19", "serial": "J17"},
+        heard="H18",
         lit={"L2": "~locked"},
         options={
             "LVCMOS33": "P3 L2 J17",
-            "LVCMOS33 PULLMODE=UP": "C17 B18 B20 F20 A18 A19",
+            "LVCMOS33 PULLMODE=UP": "C17 B18 B20 F20 A18 A19 H18",
             "LVCMOS33D DRIVE=4": "G19 E20 C20 J19",
         },
     ),
@@ -104,11 +109,12 @@ WIRING = {
         mhz=27,
         pressed={"forward": "88", "back": "87"},
         outputs={"link": "35 37 39 33", "link_n": "36 38 40 34", "serial": "69"},
+        heard="70",
         lit={"15": "~88", "16": "~87", "17": "1", "18": "1", "19": "1", "20": "~locked"},
         options={
             "IO_TYPE=LVCMOS33": "4 15 16 17 18 19 20",
             "IO_TYPE=LVCMOS33 PULL_MODE=NONE": "87 88",
-            "IO_TYPE=LVCMOS33 PULL_MODE=UP": "69",
+            "IO_TYPE=LVCMOS33 PULL_MODE=UP": "69 70",
             "PULL_MODE=NONE": "33 34 35 36 37 38 39 40",
         },
     ),
@@ -119,8 +125,9 @@ WIRING = {
         pressed={"reset": "~10", "left": "20", "forward": "19", "right": "18"},
         outputs={"red": "48 2 3 4", "green": "44 45 46 47", "blue": "34 36 42 43", "hs": "31", "vs": "28",
                  "blank_n": "32", "dac_clock": "38", "serial": "9"},
+        heard="6",
         lit={"37": "~locked"},
-        options={"LVCMOS33": "35 10 20 19 18 37 9 48 2 3 4 44 45 46 47 34 36 42 43 31 28 32 38"},
+        options={"LVCMOS33": "35 10 20 19 18 37 6 9 48 2 3 4 44 45 46 47 34 36 42 43 31 28 32 38"},
     ),
     "de2": Wiring(
         source="Altera's Tcl board package for Quartus, qboard; the DE2's manual: keys are low while pressed",
@@ -214,7 +221,7 @@ def _sorted(options: str) -> str:
 def device(wiring: Wiring, top: str, pins: Mapping[str, str], inside: str = "") -> str:
     """Return a module with a board in it: the top's ports are connected to the board's parts by the chip's pins.
 
-    Ports: reset and buttons, high while pressed; locked; and `OUTPUTS`. Outputs that the board lacks are z, and a
+    Ports: reset and buttons, high while pressed; serial_in; and `OUTPUTS`. Outputs that the board lacks are z, and a
     differential output that is not the inverse of the other is x.
 
     Args:
@@ -237,6 +244,8 @@ def device(wiring: Wiring, top: str, pins: Mapping[str, str], inside: str = "") 
     for role, pin in wiring.pressed.items():
         source = "reset" if role == "reset" else f"buttons[{BUTTONS.index(role)}]"
         lines.append(f"    assign pin_{pin.removeprefix('~')} = {'~' * pin.startswith('~')}{source};")
+    if wiring.heard:
+        lines.append(f"    assign pin_{wiring.heard} = serial_in;")
     for role, wires in wiring.outputs.items():
         given = ", ".join(f"pin_{pin}" for pin in reversed(wires.split()))
         below = OUTPUTS[role] - len(wires.split())
@@ -247,7 +256,8 @@ def device(wiring: Wiring, top: str, pins: Mapping[str, str], inside: str = "") 
 
 module device (
     input  wire reset,
-    input  wire [{len(BUTTONS) - 1}:0] buttons{outputs}
+    input  wire [{len(BUTTONS) - 1}:0] buttons,
+    input  wire serial_in{outputs}
 );
 {body}
     {top} top ({ports});

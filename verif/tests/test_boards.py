@@ -30,10 +30,12 @@ from raycaster.fpga.netlist import left_to_logic
 from raycaster.golden.engines import model_of
 from raycaster.golden.frames import screens_before
 from raycaster.golden.picture import shown
+from raycaster.program import scene_words
 from raycaster.rtl.system.camera_axis import STEP
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import load_scene
 from raycaster.screens import Screen, Span
+from raycaster.serial_frames import LEAD, framed, writes
 from raycaster.sim.monitor import VideoError
 from raycaster.sim.netlist import as_verilog
 from raycaster.verif.dvi.watch import golden, watch
@@ -55,7 +57,7 @@ MODELS = ROOT / "verif" / "dvi" / "models.v"
         ("icepi_zero", 'pins = "K15"', 'pins = "15K"', 'serial_tx.pins: must be a pin such as "N2", not "15K"'),
         ("icepi_zero", '{ standard = "LVCMOS33", options = { DRIVE = "4" }, pins = "K15"', '{ pins = "K15"',
          "serial_tx.standard: expected"),
-        ("icepi_zero", 'serial_tx = "serial"', 'serial_rx = "serial"', "outputs: serial_rx is not among the signals"),
+        ("icepi_zero", 'serial_tx = "serial"', 'serial_out = "serial"', "outputs: serial_out is not among the signals"),
         ("icepi_zero", 'serial_tx = "serial"', "", "serial_tx is neither the clock nor used in inputs or outputs"),
         ("icepi_zero", '"~gpio[3]"', '"~gpio[4]"', "down: ~gpio[4] is not a bit of a signal here, or is an output"),
         ("icepi_zero", '"~gpio[3]"', '"gpdi[3]"', "down: gpdi[3] is not a bit of a signal here, or is an output"),
@@ -243,6 +245,23 @@ def test_a_board_is_played_and_reset(tmp_path, name, engine):
     for frame, place in zip(frames, [*places, places[0]], strict=True):
         assert np.array_equal(frame, golden(small, place)), place
     assert not any(np.array_equal(*two) for two in pairwise(frames[: len(places)]))
+
+
+def test_a_room_over_the_serial_port(tmp_path):
+    """A computer sends a room to a board, which shows black until then, and the room from some frame on."""
+    board, scene = ULX3S, tmp_path / "scene.toml"
+    scene.write_text(BOARD_SCENE)
+    config = small_config(
+        BOARD_SCREEN, engine="exact", rectangles=2, reflections=1, allow_underrun=True, bus="uart", baud=2_000_000
+    )
+    small = Design(scene, load_scene(scene), config, reflections=1)
+    sends = bytes([LEAD]) + framed(writes(scene_words(small.shown, config)))
+    files = write_project(board, small, tmp_path)
+    frames = watch(board, files, config, 8, tmp_path / "run", simulator="icarus", sends=sends)
+    places = [index for index, frame in enumerate(frames) if frame.any()]
+    assert 0 not in places and places[-1] == len(frames) - 1
+    for index in places:
+        assert np.array_equal(frames[index], golden(small)), index
 
 
 MOVES = {"forward": (1, 0, 0), "back": (-1, 0, 0), "left": (0, -1, 0), "right": (0, 1, 0), "up": (0, 0, 1),

@@ -199,11 +199,14 @@ def check_synchronisers(module: Mapping[str, Any], found: Netlist) -> None:
 
 
 def design_on(board: OpenBoard, kind: str, directory: Path) -> Design | ProcessorDesign:
-    """Return a small design for a board, with a scene or with a program."""
+    """Return a small design for a board, with a scene, with a program, or with a serial bus."""
     options = board.configuration | {"engine": "exact"} | ({"screen": "tiny"} if board.video == "dvi" else {"rows": 60})
     if kind == "scene":
         return fix(SMALL_SCENE, options, "rects").design
-    config = configure(**options | {"rectangles": 3})
+    serial = {"bus": "uart"} if kind == "serial" else {}
+    config = configure(**options | {"rectangles": 3} | serial)
+    if serial:
+        return Design(SMALL_SCENE, load_scene(SMALL_SCENE), config, config.reflections)
     return ProcessorDesign(write_program(SMALL_SCENE, config, directory), config)
 
 
@@ -222,8 +225,8 @@ def test_every_crossing_of_a_quartus_board(tmp_path, name):
     check_synchronisers(module, found)
 
 
-@pytest.mark.slow_sets(quick=["ulx3s-scene"])
-@pytest.mark.parametrize("kind", ["scene", "game"])
+@pytest.mark.slow_sets(quick=["ulx3s-scene", "ulx3s-serial"])
+@pytest.mark.parametrize("kind", ["scene", "game", "serial"])
 @pytest.mark.parametrize("name", BOARDS)
 def test_every_crossing_is_synchronised_or_named(tmp_path, name, kind):
     board = find_board(name, OpenBoard)

@@ -66,7 +66,8 @@ module bench;
     reg reset = 1'b0;
     reg [5:0] buttons = 6'b000000;
     {wires}
-    device device (.reset(reset), .buttons(buttons){connected});
+    reg serial_in = 1'b0;
+    device device (.reset(reset), .buttons(buttons), .serial_in(serial_in){connected});
 
     integer step;
     initial begin
@@ -75,6 +76,7 @@ module bench;
         #20000 look(0);
         for (step = 1; step <= 6; step = step + 1) begin
             buttons = 1 << step - 1;
+            serial_in = ~serial_in;
             #200 look(step);
         end
         buttons = 6'b111111;
@@ -87,7 +89,8 @@ module bench;
     end
 
     task look(input integer number);
-        $display("step %0d ready=%b buttons=%b{lit_names}", number, {inner}.ready, {inner}.buttons{lit});
+        $display("step %0d ready=%b buttons=%b in=%b heard=%b{lit_names}", number, {inner}.ready, {inner}.buttons,
+            serial_in, {heard}{lit});
     endtask
 
     // By then the link has found the pixels.
@@ -185,6 +188,7 @@ def simulated(case: Case, files: list[Path]) -> list[dict[str, str]]:
     values = [name for name in wiring.outputs if name not in ("link", "link_n")]
     bench = BENCH.format(
         inner=inner,
+        heard="device.top.board.shown.uart_rx" if wiring.heard else "serial_in",
         wires="".join(f"wire [{width}-1:0] {name}; " for name, width in OUTPUTS.items()),
         connected="".join(f", .{name}({name})" for name in OUTPUTS),
         lit_names="".join(f" {pin}=%b" for pin in wiring.lit),
@@ -220,6 +224,7 @@ def check_inputs(case: Case, steps: list[dict[str, str]]) -> None:
         locked = number >= 0
         running = (locked or isinstance(board, QuartusBoard)) and "reset" not in held
         assert seen["ready"] == str(int(running)), number
+        assert seen["heard"] == seen["in"], number
         names = ("fire", "down", "up", "right", "left") if case.game else tuple(reversed(roles))
         meant = held | ({"fire"} if held & {"forward", "back"} else set())
         assert seen["buttons"] == "".join(str(int(name in meant)) for name in names), number
@@ -328,6 +333,9 @@ FAULTS = [
     (DE2, "de2/board.toml", 'forward = "~KEY[2]"', 'forward = "~KEY[1]"'),
     (DE2, "channel_pins.v", "i % BITS", "0"),
     (LITE, "de10_lite/board.toml", 'pins = "N3"', 'pins = "N4"'),
+    (ULX3S, "dvi_board.v", ".uart_rx(serial_in)", ".uart_rx(1'b1)"),
+    (ICE, "icebreaker/board.toml", 'RX = { standard = "LVCMOS33", pins = "6" }',
+     'RX = { standard = "LVCMOS33", pins = "11" }'),
     (LITE, "de10_lite/board.toml", 'reset = "SW[2]"', 'reset = "~SW[2]"'),
 ]  # fmt: skip
 """Faults that the checks must notice: a design with the fault, the file below `fpga/`, the right and the wrong text."""
