@@ -427,7 +427,6 @@ class Drawing:
 
     def emit(self, stop: int) -> None:
         """Mix the colours of all levels, up to a column."""
-        self.now += 1
         while True:
             self.result.steps["parts"] += 1
             self.now += len(self.shown) + 1
@@ -481,8 +480,8 @@ class Drawing:
             ahead: with rays, e at the surface; a rectangle at t = n / |slope| is in the way if that is less than 1 / e.
         """
         entries = []
-        # The slope's components are asked for, one per cycle.
-        hand = self.now + 3 + ANSWER + 1
+        # The slope's components are asked for, one per cycle; a chain's in the first cycle in which it is there.
+        hand = self.now + 3 + ANSWER + (1 if rays else 0)
         accepted, issued = hand, 0
         for rect in self.model.table:
             lines = self.half_lines(chain, rect, rays, ahead)

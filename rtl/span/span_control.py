@@ -44,11 +44,11 @@ def span_control(
         frame: `Frame` of the level below; read where that level goes on.
         painted: strobe; the level has been painted.
         emitted: strobe; the span's run has been taken.
-        begin_set_up: output strobe.
+        begin_set_up: output strobe, in the cycle before the chain is valid.
         begin_sweep: output strobe, in the cycle before the chain, its winner, its column and its count are valid.
         begin_corner: output strobe; apply the corner rule.
         begin_paint: output strobe; paint the columns from column up to stop.
-        begin_emit: output strobe; emit those columns.
+        begin_emit: output strobe, with painted; emit those columns.
         push: output strobe; keep the chain, as the one behind its winner comes next.
         fetch: output strobe; fetch the winner's rectangle.
         level: unsigned output, `level_bits` bits; mirrors that the chain's rays have met.
@@ -95,11 +95,11 @@ def span_control(
 
     @always_comb
     def operate():
-        begin_set_up.next = entering and (state == SpanState.SET_UP)
+        begin_set_up.next = (state == SpanState.DESCEND) or (start and (state == SpanState.IDLE))
         begin_sweep.next = (state == SpanState.INHERIT) or ((state == SpanState.SET_UP) and set_up_done)
         begin_corner.next = (state == SpanState.SPAN) and not leaf
         begin_paint.next = entering and (state == SpanState.PAINT)
-        begin_emit.next = entering and (state == SpanState.EMIT)
+        begin_emit.next = painted and ending and (state == SpanState.PAINT)
         push.next = state == SpanState.DESCEND
         fetch.next = (state == SpanState.RETURN) or (entering and (state == SpanState.SWEEP) and not gap)
 
@@ -162,7 +162,6 @@ def span_control(
         elif state == SpanState.IDLE:
             if start:
                 state.next = SpanState.SET_UP
-                entering.next = True
         elif state == SpanState.SET_UP:
             if set_up_done:
                 state.next = SpanState.SWEEP
@@ -187,7 +186,6 @@ def span_control(
                 state.next = SpanState.DESCEND
                 if ending:
                     state.next = SpanState.EMIT
-                    entering.next = True
         elif state == SpanState.EMIT:
             # The row's last run ends all chains.
             if emitted:
@@ -198,7 +196,6 @@ def span_control(
                     state.next = SpanState.ASCEND
         elif state == SpanState.DESCEND:
             state.next = SpanState.SET_UP
-            entering.next = True
         elif state == SpanState.ASCEND:
             state.next = SpanState.INHERIT
             if frame.part_stop != frame.stop:

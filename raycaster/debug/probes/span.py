@@ -336,7 +336,8 @@ class SpanProbes(Description):
         rows_left = ray.config.screen_geometry.rows - ray.row
         deals = zip(series["dealer.next_row"], series["dealer.left"], strict=True)
         start = next((cycle for cycle, deal in enumerate(deals) if deal == (1, rows_left)), viewed)
-        events, counts, begin = [Event("start", start, Place(0))] if start < viewed else [], Counter[Any](), 0
+        # A chain is there from the cycle after the strobe on.
+        events, counts, begin = [Event("start", start, Place(0))] if start < viewed else [], Counter[Any](chains=1), 0
         for cycle in cycles[start + 1 : viewed]:
             now = {key: values[cycle] or 0 for key, values in series.items()}
             events += self._steps(now, cycle, sight, counts)
@@ -380,8 +381,9 @@ class SpanProbes(Description):
 
         if now["unit.rects_fetch"] and now["unit.rects_index"] in sight.rects:
             yield event("fetch", {}, now["unit.rects_index"])
-        if now["span_control.begin_set_up"] and here:
+        if counts["chains"] and here:
             yield event("chain", sight.chain_values(number))
+        counts["chains"] = now["span_control.begin_set_up"]
         if now["line_eval.ask"]:
             query = cut(self._query, now["line_eval.query_word"])
             from_light = query.get("from_light")

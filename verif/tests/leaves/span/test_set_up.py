@@ -84,7 +84,7 @@ def test_set_up(options, leaf_of, random):
             assert there == active, "the model is wrong"
             kinds.add((bool(there), len(there) == 1, bool(chain.distance)))
         # The model counts up to the cycle after the set-up's end.
-        leaf.stimulus += [{"begin_set_up": 1}, *[{"begin_set_up": 0}] * (drawing.now + 1)]
+        leaf.stimulus += [{"begin_set_up": 1}, *[{"begin_set_up": 0}] * (drawing.now + 2)]
         leaf.expected[leaf.cycle - 4] |= {"set_up_done": 0}
         leaf.expected[leaf.cycle - 3] |= {"set_up_done": 1, "count": len(entries)}
         appended[leaf.cycle] = [
