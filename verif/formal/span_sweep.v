@@ -22,10 +22,10 @@
 // designs = ["span rows=180 scale=6 pixels=2 turn light patterns materials rectangles=3"]
 // [faults]
 // "span-tiny48-s2-u2-r3-m1-l11520-c8" = ["sweep.follows 0", "sweep.meets 1", "sweep.nearer inverted",
-//   "sweep.nearer_heir 1", "sweep.same 1", "sweep.same_heir 1", "sweep.found_at edge", "sweep.crossing increased",
+//   "sweep.nearer_heir 1", "sweep.same 1", "sweep.same_heir 1", "sweep.sooner 1", "sweep.crossing increased",
 //   "sweep.rivalled 0", "sweep.inherited 1", "sweep.answer_left edge", "sweep.answer_right 0", "sweep.later inverted",
-//   "sweep.bound as stop", "sweep.last as bound", "sweep.left as column", "sweep.in_time 1", "sweep.heir_word late",
-//   "sweep.chain_stop increased"]
+//   "sweep.bound as stop", "sweep.last as bound", "sweep.left as column", "sweep.in_time 1", "sweep.outlasts 0",
+//   "sweep.opens 1", "sweep.shortened 0", "sweep.held 1", "sweep.left_over 0", "sweep.chain_stop increased"]
 
 module span_sweep;
 localparam C = COLUMN_BITS, N = EYE_BITS - 1, E = ENTRY_BITS;
@@ -99,16 +99,18 @@ assign winner_word = gap ? nobody : first_seen;
 
 // The table, and a pass from its start to its end.
 reg known = 0, runs;
-reg [1:0] tested, heir_number;
+reg [1:0] tested, present, heir_number;
 reg [E-1:0] tested_word;
 always @(posedge clk) begin
     known <= 1;
     if (reset) runs <= 0;
     else if (start || done) runs <= start;
     if (read) {tested, tested_word} <= {place, place == 0 ? entry_0 : place == 1 ? entry_1 : entry_2};
-    if (dut.take) heir_number <= tested;
+    if (dut.begins || dut.advance) present <= tested;
+    if (dut.take) heir_number <= present;
 end
 wire [E-1:0] tested_entry = tested == 0 ? entry_0 : tested == 1 ? entry_1 : entry_2;
+wire [E-1:0] present_entry = present == 0 ? entry_0 : present == 1 ? entry_1 : entry_2;
 wire [E-1:0] heir_entry = heir_number == 0 ? entry_0 : heir_number == 1 ? entry_1 : entry_2;
 always @* begin
     if (!known) assume (reset);
@@ -116,13 +118,14 @@ always @* begin
 end
 
 // Questions and answers.
+wire scan = dut.state == 1, order = dut.state == 2, cross = dut.state == 3, rivals = dut.state == 4;
 reg asked, divides;
 reg [1:0] rival;
 reg [C-1:0] left, right;
-wire [1:0] other = dut.rivalled ? heir_number : seen;
-wire [E-1:0] other_entry = dut.rivalled ? heir_entry : first_seen;
-wire [C:0] change = changed(tested, rival);
-wire above_left = before(tested, rival, left), above_right = before(tested, rival, right);
+wire [1:0] other = rivals ? heir_number : seen;
+wire [E-1:0] other_entry = rivals ? heir_entry : first_seen;
+wire [C:0] change = changed(present, rival);
+wire above_left = before(present, rival, left), above_right = before(present, rival, right);
 always @(posedge clk) begin
     if (reset) {asked, divides} <= 0;
     else begin
@@ -137,13 +140,13 @@ always @* begin
     if (answer_valid) assume ((answer_left < 0) != above_left && (answer_right < 0) != above_right);
     if (answer_divided) assume (answer_columns == (change - left) % (1 << C));
     if (known && asks_ask) begin
-        assert ((!asked || answer_valid) && (!divides || answer_divided) && tested != other && dut.asked_left <= dut.asked_right);
-        assert (met_left[tested] && met_right[tested] && met_left[other] && met_right[other]);
+        assert ((!asked || answer_valid) && (!divides || answer_divided) && present != other && dut.asked_left <= dut.asked_right);
+        assert (met_left[present] && met_right[present] && met_left[other] && met_right[other]);
         assert (asks_query_left == dut.asked_left && asks_query_right == dut.asked_right);
-        assert ({asks_query_axis_1, asks_query_back_1} == tested_entry[2*C+N +: 3]);
+        assert ({asks_query_axis_1, asks_query_back_1} == present_entry[2*C+N +: 3]);
         assert ({asks_query_axis_2, asks_query_back_2} == other_entry[2*C+N +: 3]);
-        assert (asks_query_factor_1 == other_entry[2*C +: N] && asks_query_factor_2 == tested_entry[2*C +: N]);
-        assert (asks_query_strict == (tested_entry[E-1 -: 2] > other_entry[E-1 -: 2]));
+        assert (asks_query_factor_1 == other_entry[2*C +: N] && asks_query_factor_2 == present_entry[2*C +: N]);
+        assert (asks_query_strict == (present_entry[E-1 -: 2] > other_entry[E-1 -: 2]));
     end
     if (known && asks_divide) begin
         assert (answer_valid && !above_left && above_right);
@@ -151,20 +154,37 @@ always @* begin
     end
 end
 
-// What holds after the entries below `passed`, and for the one that waits for an answer.
-wire [1:0] passed = count - dut.rest;
+// What holds after the entries below `passed`, and for the present one.
+wire [2:0] entries_left = dut.rest + dut.held;
+wire [1:0] passed = count - entries_left;
 wire [C-1:0] winner_end = gap ? chain_stop : first_seen[C-1:0];
-wire scan = dut.state == 1, order = dut.state == 2, cross = dut.state == 3, rivals = dut.state == 4;
+wire begun = runs && !dut.begins;
 wire within = column <= p && p < stop;
-wire [C-1:0] tested_start_now = tested_word[C +: C], tested_end = tested_word[C-1:0];
-wire [1:0] tested_axis_now = tested_word[E-3 -: 2];
+wire [C-1:0] start_now = present_entry[C +: C], end_now = present_entry[C-1:0];
+wire [C-1:0] first_now = start_now > column ? start_now : column;
+wire [1:0] axis_now = present_entry[E-3 -: 2], winner_axis = winner_word[E-3 -: 2];
 always @* if (known) begin
     assert (dut.state <= 4 && runs == (dut.state != 0) && (runs || place == 0));
-    assert (asked == (order || rivals) && divides == cross);
-    if (runs) begin
-        assert (dut.rest <= count && place == passed + 2'd1);
-        if (dut.rest != 0) assert (tested == passed && tested_word == tested_entry);
+    assert (!dut.begins || (scan && !dut.held));
+    assert ((runs || !dut.held) && (asked || dut.asks_rival) == (order || rivals) && !(asked && dut.asks_rival));
+    assert (cross ? divides != dut.crossed : !divides);
+    assert (!order || asked);
+    if (runs) assert (place == tested + 2'd1 && (tested == 3 || tested_word == tested_entry));
+    if (dut.begins) assert (tested == 0);
+    if (begun) begin
+        assert (entries_left <= count && (dut.held || (scan && dut.rest == 0)));
+        if (dut.held) begin
+            assert (present == passed && tested == passed + 2'd1 && dut.present_word == present_entry);
+            assert (dut.left_1 == first_now && dut.same_1 == (axis_now == winner_axis));
+            assert (dut.opens_1 == (gap ? start_now >= column : present != seen && end_now > column));
+            if (!gap) begin
+                assert (dut.meets_1 == (start_now < winner_end) && dut.outlasts_1 == (end_now > winner_end));
+                assert (dut.nearer_1 == ({present_entry[2*C +: N], present_entry[E-1 -: 2]}
+                    < {first_seen[2*C +: N], first_seen[E-1 -: 2]}));
+            end
+        end
         assert (stop <= winner_end && (gap ? column <= stop : column < stop));
+        if (!gap) assert (dut.shortened == (stop < winner_end) && dut.bound == (dut.shortened ? stop : winner_end - 1'b1));
         if (!inherited) assert (stop == winner_end);
         if (inherited) begin
             assert (heir_number < passed && heir_word == heir_entry && met_stop[heir_number]);
@@ -173,22 +193,20 @@ always @* if (known) begin
         end
     end
     if (order || cross) begin
-        assert (!gap && dut.rest != 0 && rival == seen && tested != seen && left == dut.left_1);
-        assert (left == (tested_start_now > column ? tested_start_now : column));
-        assert (left < winner_end && left <= stop && left < tested_end && left <= right);
-        assert (right == (tested_end - 1'b1 < dut.bound ? tested_end - 1'b1 : dut.bound));
-        assert (tested_axis_now != first_seen[E-3 -: 2]);
+        assert (!gap && dut.held && rival == seen && present != seen && left == first_now);
+        assert (left < winner_end && left <= stop && left < end_now && left <= right);
+        assert (right == (end_now - 1'b1 < dut.bound ? end_now - 1'b1 : dut.bound) && axis_now != winner_axis);
     end
-    if (cross) assert (!above_left && above_right);
+    if (cross) assert (!above_left && above_right && (divides || dut.crossing == change[C-1:0]));
     if (rivals) begin
-        assert (dut.rest != 0 && inherited && rival == heir_number && left == stop && right == stop);
-        assert (met_stop[tested] && (gap || tested != seen) && tested_axis_now != heir_entry[E-3 -: 2]);
-        if (within && met_p[tested]) assert (!gap && before_p[3*seen + tested]);
-        if (!gap && p == stop && stop < winner_end) assert (before_p[3*tested + seen]);
+        assert (dut.held && inherited && (!asked || (rival == heir_number && left == stop && right == stop)));
+        assert (met_stop[present] && (gap || present != seen) && axis_now != heir_entry[E-3 -: 2]);
+        if (within && met_p[present]) assert (!gap && before_p[3*seen + present]);
+        if (!gap && p == stop && stop < winner_end) assert (before_p[3*present + seen]);
     end
 end
 generate
-    for (a = 0; a < 3; a = a + 1) always @* if (known && runs && met_p[a]) begin
+    for (a = 0; a < 3; a = a + 1) always @* if (known && begun && met_p[a]) begin
         if (a < passed && within) assert (!gap && (seen == a || before_p[3*seen + a]));
         if (a < passed && p == stop && !(seen == a && !gap))
             assert (inherited && (heir_number == a || before_p[3*heir_number + a]));
@@ -199,10 +217,9 @@ generate
 endgenerate
 
 // Every pass ends: after an answer there is a question that has not been asked of this entry, or another entry.
-always @* if (known && $past(known) && $past(runs) && runs) begin
-    if ($past(scan) && scan) assert (dut.rest < $past(dut.rest));
-    if (!$past(scan) && scan) assert (dut.rest < $past(dut.rest));
-    if ($past(order) && !order) assert (!cross || dut.rest == $past(dut.rest));
+always @* if (known && $past(known) && $past(begun) && begun) begin
+    if (scan) assert (entries_left < $past(entries_left));
+    if ($past(order)) assert (order || cross || rivals || scan);
     if ($past(rivals)) assert (rivals || scan);
     if ($past(cross)) assert (cross || rivals || scan);
 end
