@@ -72,7 +72,10 @@ endgenerate
 always @* begin
     assume (count <= 3 && column < chain_stop);
     if (!gap) assume (seen < count && met_first[seen]);
-    if (met_p == 7) assume (!(before_p[1] && before_p[5] && before_p[6]) && !(before_p[3] && before_p[7] && before_p[2]));
+    if (met_p == 7) begin
+        assume (!(before_p[1] && before_p[5] && before_p[6]));
+        assume (!(before_p[3] && before_p[7] && before_p[2]));
+    end
 end
 
 // The column in which the order of two changes, and the order from there on.
@@ -140,7 +143,8 @@ always @* begin
     if (answer_valid) assume ((answer_left < 0) != above_left && (answer_right < 0) != above_right);
     if (answer_divided) assume (answer_columns == (change - left) % (1 << C));
     if (known && asks_ask) begin
-        assert ((!asked || answer_valid) && (!divides || answer_divided) && present != other && dut.asked_left <= dut.asked_right);
+        assert ((!asked || answer_valid) && (!divides || answer_divided));
+        assert (present != other && dut.asked_left <= dut.asked_right);
         assert (met_left[present] && met_right[present] && met_left[other] && met_right[other]);
         assert (asks_query_left == dut.asked_left && asks_query_right == dut.asked_right);
         assert ({asks_query_axis_1, asks_query_back_1} == present_entry[2*C+N +: 3]);
@@ -184,7 +188,8 @@ always @* if (known) begin
             end
         end
         assert (stop <= winner_end && (gap ? column <= stop : column < stop));
-        if (!gap) assert (dut.shortened == (stop < winner_end) && dut.bound == (dut.shortened ? stop : winner_end - 1'b1));
+        if (!gap) assert (dut.shortened == (stop < winner_end));
+        if (!gap) assert (dut.bound == (dut.shortened ? stop : winner_end - 1'b1));
         if (!inherited) assert (stop == winner_end);
         if (inherited) begin
             assert (heir_number < passed && heir_word == heir_entry && met_stop[heir_number]);
