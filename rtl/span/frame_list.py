@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Everything between the units and the monitor: two lists of runs, each a whole frame."""
 
-from myhdl import always_comb, block, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.hdl.signals import bit, bits_for, side_by_side, tied, unconnected, unsigned
 from raycaster.rtl.span.frame_switch import frame_switch
@@ -29,7 +29,7 @@ def frame_list(
         run: flag of the live `Picture`; read in the cycle after take_scene.
         hold: flag; no row is dealt, as the units are not ready for this frame. Only with more than one unit.
         take_scene: output strobe; the pending scene goes live.
-        stop: output flag; the units must be reset, as their frame is abandoned.
+        stop: output flag; the units must be reset, as their frame was abandoned in the cycle before.
         first_row: output strobe, as in `row_slope`; in the second cycle after take_scene.
         next_row: output strobe, as in `row_slope`.
         start: unsigned output, a bit for each unit; strobe, the unit draws the present row.
@@ -50,7 +50,7 @@ def frame_list(
     pixel_bits = len(shown) // pixels
     place_width = bits_for(2 * entries + 1)
 
-    new_frame, whole, full, upper, view_run, write, dropped = (bit() for _ in range(7))
+    new_frame, whole, full, upper, view_run, write, dropped, abandoned = (bit() for _ in range(8))
     offered, take = bit(), bit()
     first, place = unsigned(place_width), unsigned(place_width)
     turn = unsigned(bits_for(units)) if units > 1 else unconnected(1)
@@ -59,7 +59,7 @@ def frame_list(
 
     switch = frame_switch(
         clk, reset, start_screen=scan.start_screen, run=run, whole=whole, full=full, take_scene=take_scene,
-        new_frame=new_frame, stop=stop, upper=upper, view_run=view_run, busy=busy, events=events,
+        new_frame=new_frame, stop=abandoned, upper=upper, view_run=view_run, busy=busy, events=events,
     )  # fmt: skip
     dealer = row_dealer(
         clk, reset=dropped, new_frame=new_frame, room=room, done=done, first_row=first_row, next_row=next_row,
@@ -77,7 +77,11 @@ def frame_list(
 
     @always_comb
     def drop():
-        dropped.next = reset or stop
+        dropped.next = reset or abandoned
+
+    @always(clk.posedge)
+    def stop_units():
+        stop.next = abandoned and not reset
 
     @always_comb
     def find_first():
@@ -98,16 +102,21 @@ def frame_list(
         heads = [ListEntry(columns, pixel_bits) for _ in range(units)]
         head_words = [one.word for one in heads]
         waits, rooms, readies = ([bit() for _ in range(units)] for _ in range(3))
-        takes = unsigned(units)
+        takes, emptied = unsigned(units), bit()
         waiting = side_by_side(waits)
         all_room, all_ready = side_by_side(rooms), side_by_side(readies)
         queues = [
             run_queue(
-                clk, reset=dropped, valid=valid(i), run=queued[i], take=takes(i), ready=readies[i], room=rooms[i],
+                clk, reset=emptied, valid=valid(i), run=queued[i], take=takes(i), ready=readies[i], room=rooms[i],
                 offered=waits[i], head=heads[i], columns=columns, places=queue,
             )
             for i in range(units)
         ]  # fmt: skip
+
+        # The units go on for a cycle.
+        @always_comb
+        def empty():
+            emptied.next = dropped or stop
 
         @always_comb
         def collect():

@@ -33,6 +33,7 @@
 module whole_frames;
 frame_list dut (.*);
 wire start_screen = scan_start_screen, write = dut.write, upper = dut.upper, new_frame = dut.new_frame;
+wire abandoned = dut.abandoned;
 wire row_written = write && dut.entry_word[RUN_BITS-1:1] == COLUMNS;
 wire [7:0] place = dut.place, first = upper ? ENTRIES : 0;
 
@@ -56,9 +57,9 @@ always @(posedge clk) begin
         begins <= takes_scene;
         {rows_in, entries_in} <= new_frame ? 16'b0 : {rows_taken, entries_taken};
         dealt <= new_frame ? 0 : dealt + (start != 0);
-        at_work <= stop ? 0 : at_work & ~done | start;
+        at_work <= abandoned ? 0 : at_work & ~done | start;
         if (begins) {drawing, waits, black} <= {run, !run, !run};
-        else if (completes || stop) {drawing, waits} <= {1'b0, completes};
+        else if (completes || abandoned) {drawing, waits} <= {1'b0, completes};
         else if (takes_scene) waits <= 0;
         if (new_frame) whole[upper] <= 0;
         else if (completes) whole[upper] <= 1;
@@ -83,19 +84,20 @@ end
 // A scene goes live only between two frames. A frame is abandoned only if its list is full and a run more comes.
 always @* if (known) begin
     assert (take_scene == takes_scene && new_frame == (begins && run));
-    if (stop) assert (drawing && dut.offered && entries_taken == ENTRIES && rows_taken < ROWS);
-    assert (events_drawn == completes && events_list_full == stop);
+    if (abandoned) assert (drawing && dut.offered && entries_taken == ENTRIES && rows_taken < ROWS);
+    if ($past(known)) assert (stop == ($past(abandoned) && !$past(reset)));
+    assert (events_drawn == completes && events_list_full == abandoned);
     assert (events_shown == (hands_over && !black) && events_again == (start_screen && !hands_over));
     assert (events_late == (start_screen && drawing));
 end
 
 // Rows are dealt in order, each to the unit whose turn it is and as soon as that is idle and has room.
 reg settling, settled;
-always @(posedge clk) {settling, settled} <= reset || new_frame || stop ? 0 : {first_row, settling || settled};
+always @(posedge clk) {settling, settled} <= reset || new_frame || abandoned ? 0 : {first_row, settling || settled};
 wire [UNITS-1:0] idle = dut.row_dealer_i.room & (~at_work | done), in_turn = 1 << dealt % UNITS;
 always @* if (known && !reset) begin
     assert (start == (drawing && settled && dealt < ROWS ? idle & in_turn : 0) && next_row == (start != 0));
-    if ($past(known) && !$past(reset)) assert (first_row == ($past(new_frame) && !$past(stop)));
+    if ($past(known) && !$past(reset)) assert (first_row == ($past(new_frame) && !$past(abandoned)));
 end
 
 // Runs are taken from the units in the same order, and at once.
@@ -107,8 +109,8 @@ generate if (UNITS > 1) begin: several
         assert (takes == (take ? 1 << rows_taken % UNITS : 0));
     end
 end endgenerate
-always @* if (known && drawing && dut.offered) assert (take || stop);
-always @* if (known && !drawing) assert (!take && !stop);
+always @* if (known && drawing && dut.offered) assert (take || abandoned);
+always @* if (known && !drawing) assert (!take && !abandoned);
 
 // Invariants.
 wire [1:0] state = dut.frame_switch_i.state;
@@ -135,7 +137,7 @@ wire view_run = dut.view_run;
 reg was_late, was_abandoned;
 always @(posedge clk) begin
     was_late <= !reset && !takes_scene && (was_late || events_late);
-    was_abandoned <= !reset && !hands_over && (was_abandoned || stop);
+    was_abandoned <= !reset && !hands_over && (was_abandoned || abandoned);
 end
 always @* cover (known && events_shown && was_late);
 always @* cover (known && events_shown && was_abandoned);

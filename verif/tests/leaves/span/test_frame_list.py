@@ -48,7 +48,7 @@ def test_frame_list(units, pixels, doubling, clocks, queue, pace, leaf_of, rando
     collector = Collector(COLUMNS, ROWS, units, ENTRIES)
     queues = [Queue(COLUMNS, queue) for _ in range(units)]
     drawers = [Unit(random) for _ in range(units)]
-    frame, run, seen = [], 0, Counter()
+    frame, run, seen, stops = [], 0, Counter(), False
     leaf.case({"reset": 1})
     for _ in range(leaf.some(40) * beam.period):
         cycle = leaf.cycle
@@ -69,7 +69,7 @@ def test_frame_list(units, pixels, doubling, clocks, queue, pace, leaf_of, rando
         leaf.stimulus[-1]["runs"] = side_by_side([packed(one) if one else 0 for one in offered], width)
         if not reset:
             events = switch.events(start_screen, whole, full, cycle)
-            leaf.expect({"take_scene": take_scene, "stop": full, **named("events", events)})
+            leaf.expect({"take_scene": take_scene, "stop": stops, **named("events", events)})
             started = 0 if start is None else 1 << start
             leaf.expect({"first_row": dealer.first_row, "next_row": start is not None, "start": started})
             leaf.expect({"ready": sum(flag << number for number, flag in enumerate(ready))}, when=units > 1)
@@ -86,8 +86,10 @@ def test_frame_list(units, pixels, doubling, clocks, queue, pace, leaf_of, rando
         for number, drawer in enumerate(drawers):
             taken = offered[number] is not None and ready[number]
             assert ready[number] or units == 1 or not drawer.runs  # with room for a row, a unit never waits
-            queues[number].clock(offered[number], bool(number == collector.turn and take and units > 1), dropped)
-            drawer.clock(taken, frame[dealer.row] if start == number else None, dropped)
+            queues[number].clock(
+                offered[number], bool(number == collector.turn and take and units > 1), dropped or stops
+            )
+            drawer.clock(taken, frame[dealer.row] if start == number else None, bool(reset or stops))
         dealer.clock(bool(new_frame), start, done, dropped)
         collector.clock(bool(new_frame), ENTRIES * switch.upper, head, dropped)
         if new_frame:
@@ -100,6 +102,7 @@ def test_frame_list(units, pixels, doubling, clocks, queue, pace, leaf_of, rando
         if take_scene:
             run = int(random.random() < 0.9)
         beam.clock(reset)
+        stops = bool(full and not reset)
         if reset:
             switch.reset()
             leaf.expected.pop(cycle + 1, None)
