@@ -16,6 +16,7 @@ from typing import Any
 
 from PIL import Image
 
+from raycaster.buses import USUAL_BAUD
 from raycaster.complaints import LONGEST_SHOWN
 from raycaster.configuration import FEATURES, MOST_RECTANGLES, MOST_REFLECTIONS, WORLD_SIZE, Configuration
 from raycaster.design.decide import configure
@@ -28,7 +29,8 @@ from raycaster.output import Console, replaced
 from raycaster.play.system import FASTEST
 from raycaster.play.walk import DRAG, STEEPEST, TURNS, WALKS
 from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
-from raycaster.rtl.engines import SEED
+from raycaster.registers import register_map
+from raycaster.rtl.engines import ENGINES, SEED
 from raycaster.runs.jobs import processes, run_jobs
 from raycaster.scene import COMPLAINTS, PATTERN_KEYS, PATTERNS, Scene, load_scene, packaged_scenes
 from raycaster.screens import SCREENS
@@ -40,7 +42,7 @@ from raycaster.web.wasm import golden_wasm, machine_wasm
 PAGE = Path(__file__).with_name("page")
 SCRIPTS = (
     "vendor/smol-toml", "scene", "hardware", "settings", "text", "room", "page", "engines", "life", "pixel", "plan",
-    "properties", "live",
+    "properties", "board", "live",
 )  # fmt: skip
 """Scripts in loading order; `settings.js` is generated."""
 
@@ -166,8 +168,22 @@ def _settings(models: Sequence[Model], *, test: bool) -> dict[str, Any]:
             ],
         },
         "game": {"buttons": list(BUTTON_NAMES), "keys": keys(GAME_KEYS)},
+        "board": _board(),
         "seed": {"fractions": list(FRACTIONS), "lacks": dict(SEED.facts.lacks)},
     }  # fmt: skip
+
+
+def _board() -> dict[str, Any]:
+    """Return what the page needs to send a scene to a board: registers, engines by code, and the usual rate."""
+    registers = {
+        name: {
+            "address": register.address,
+            "fields": {key: [one.lsb, one.width] for key, one in register.fields.items()},
+        }
+        for name, register in register_map(1).items()
+    }
+    engines = {engine.facts.code: name for name, engine in ENGINES.items()}
+    return {"registers": registers, "engines": engines, "id": register_map(1)["id"].reset, "baud": USUAL_BAUD}
 
 
 def write_site(

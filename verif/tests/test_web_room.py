@@ -10,9 +10,14 @@ import pytest
 from conftest import PAGE_MODELS, page_state
 from test_web import golden_hash
 
+from raycaster.configuration import FEATURES, Configuration
 from raycaster.design.decide import configure
 from raycaster.golden.frames import scene_cycles
+from raycaster.program import scene_words
+from raycaster.registers import register_map
+from raycaster.rtl.bus.avalon_interface import engine_word, size_word
 from raycaster.scene import Scene, load_scene, packaged_scenes
+from raycaster.serial_frames import LEAD, access, framed, writes
 
 CONFIG = configure(**PAGE_MODELS["plain"])
 SCREEN = CONFIG.screen_geometry
@@ -259,3 +264,71 @@ def test_other_tabs_take_the_room(room):
     assert room.input_value("#engines-scene") == "your room"
     tiny = configure(**PAGE_MODELS["exact"]).screen_geometry
     assert state["exact"] == {"hash": golden_hash(load_scene(packaged_scenes()["boxes"]), screen=tiny), "wrong": 0}
+
+
+# A board --------------------------------------------------------------------------------------------------------------
+
+PORT = """(([answers]) => {
+    // A port of Web Serial that gives one answer per frame, and keeps what was written.
+    let give, count = 0;
+    const written = [];
+    const readable = new ReadableStream({ start: (controller) => (give = controller) });
+    const writable = new WritableStream({ write(bytes) {
+        written.push([...bytes]);
+        if (answers[count]) give.enqueue(new Uint8Array(answers[count++]));
+    } });
+    const port = { readable, writable, open: async ({ baudRate }) => (port.rate = baudRate), close: async () => {} };
+    Object.defineProperty(navigator, "serial", { configurable: true, value: { requestPort: async () => port } });
+    window.sentToBoard = written;
+})"""
+BOARD = configure(engine="span", turn=True, light=True, materials=True, patterns=True, rectangles=32, reflections=4)
+
+
+def room_bytes(scene: Scene, config: Configuration) -> list[int]:
+    return [LEAD, *framed(writes(scene_words(scene, config)))]
+
+
+def test_the_page_makes_the_same_frames_as_python(room):
+    """Every packaged scene, for designs with and without what it needs: the same bytes."""
+    script = """([name, design]) => {
+        const scene = readScene(RayCaster.scenes[name], name, Infinity);
+        return RayCasterBoard.frame(scene, scene.basis, design);
+    }"""
+    plain = configure(engine="exact", rectangles=32)
+    compared = 0
+    for chosen in room.evaluate("Object.keys(RayCaster.scenes)"):
+        scene = load_scene(packaged_scenes()[chosen])
+        for config in (BOARD, plain):
+            if len(scene.rect) > config.rectangles:
+                continue
+            design = {name: getattr(config, name) for name in (*FEATURES, "rectangles")}
+            assert bytes(room.evaluate(script, [chosen, design])) == bytes(room_bytes(scene, config)), chosen
+            compared += 1
+    assert compared > 40
+
+
+def test_send_to_board(room):
+    """The design is read first; then its room is sent in one frame, whose answer is waited for."""
+    scene = scene_of(choose(room, "lamplight"))
+    checked(room)
+    assert room.is_visible("#room-board") == room.evaluate("Boolean(navigator.serial)")
+    registers = register_map(*BOARD.map)
+    asked = access(0, read=registers["table"].address + 1)
+    words = {"id": registers["id"].reset, "engine": engine_word(BOARD), "size": size_word(BOARD)}
+    answer = [*asked, *(0 for _ in range(registers["table"].address + 1))]
+    for name, word in words.items():
+        answer[1 + registers[name].address] = word
+    written = access(registers["control"].address, [0])[:1]
+    for answers, said in (
+        ([framed(answer), framed(written)], "The board shows this room, with the span engine."),
+        ([framed([*answer[:1], 1, *answer[2:]])], "Not sent: what answers is no ray tracer"),
+        ([], "Not sent: no answer at 1000000 baud"),
+    ):
+        room.evaluate(PORT, [[list(one) for one in answers]])
+        room.evaluate("find('room-board').hidden = false")
+        room.click("#room-board")
+        room.wait_for_function(f"find('room-said').textContent === {said!r}")
+        frames = room.evaluate("window.sentToBoard")
+        assert frames[0] == [LEAD, *framed(asked)]
+        if len(answers) == 2:
+            assert frames[1:] == [room_bytes(scene, BOARD)]

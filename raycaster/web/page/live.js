@@ -240,9 +240,19 @@ tabs.room = {
         download(url, room.name.endsWith(".toml") ? room.name : "room.toml");
         setTimeout(() => URL.revokeObjectURL(url), 1000);
       },
+      async board() {
+        try {
+          const port = await navigator.serial.requestPort(), { camera } = walker;
+          const design = await RayCasterBoard.send(port, { ...room.scene, camera }, camera.basis);
+          say(`The board shows this room, with the ${design.name} engine.`);
+        } catch (error) {
+          say(`Not sent: ${error.message}`);
+        }
+      },
       picture: () => download(canvas.toDataURL(), `${room.name.replace(/\.toml$/, "") || "room"}.png`),
       full: () => canvas.requestFullscreen(),
     };
+    find("room-board").hidden = !navigator.serial;
     for (const [name, action] of Object.entries(actions)) {
       find(`room-${name === "picture" ? "picture-save" : name}`).addEventListener("click", (event) => {
         action();
