@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Leaf test of `frame_reader`: frames of any length, and what is no frame between them."""
 
+import zlib
+
 import pytest
 from vectors import any_word
 
 from raycaster.rtl.bus.frame_check import CHECK_CYCLES
 from raycaster.rtl.bus.frame_reader import frame_reader
-from raycaster.serial_frames import ESCAPE, FLAG, framed
+from raycaster.serial_frames import ESCAPE, ESCAPED, FLAG, framed
 
 ODD_WORDS = (0x7E7E_7E7E, 0x7D7D_7D7D, 0x5E5D_7D7E, 0, 0xFFFF_FFFF)
 
@@ -26,6 +28,23 @@ def spoilt(data: bytes, kind: int, random) -> bytes:
             return data[:-1] + bytes([ESCAPE, FLAG])
         case _:  # a byte more
             return data[:at] + bytes([0x55]) + data[at:]
+
+
+def wrong_checks() -> list[int]:
+    """Return what a check must differ by so that the reader's state is wrong in one bit alone, for each bit."""
+    rows = [(zlib.crc32((1 << bit).to_bytes(4, "little")) ^ zlib.crc32(bytes(4)), 1 << bit) for bit in range(32)]
+    for bit in range(32):
+        pivot = next(row for row in rows[bit:] if row[0] >> bit & 1)
+        rows.remove(pivot)
+        rows = [(a ^ pivot[0], b ^ pivot[1]) if a >> bit & 1 else (a, b) for a, b in rows]
+        rows.insert(bit, pivot)
+    return [difference for _, difference in rows]
+
+
+def stuffed(words: list[int]) -> bytes:
+    """Return the bytes of words between two flags, with no check of their own."""
+    plain = b"".join(word.to_bytes(4, "little") for word in words)
+    return b"".join(bytes([ESCAPE, one ^ ESCAPED] if one in (FLAG, ESCAPE) else [one]) for one in plain)
 
 
 @pytest.mark.parametrize("places", [5, 8, 59])
@@ -69,6 +88,11 @@ def test_frame_reader(places, leaf_of, random):
     receive(framed([0] * (places - 1))[:-1])
     settled = leaf.cycle
     flag([0] * (places - 1))
+    for difference in wrong_checks():
+        words = [any_word(random)]
+        right = zlib.crc32(words[0].to_bytes(4, "little"))
+        receive(stuffed([*words, right ^ difference]))
+        flag(None)
     for number in range(leaf.some(90)):
         length = int(random.integers(places)) if number % 9 else places - 1
         words = [any_word(random) if random.random() < 0.7 else int(random.choice(ODD_WORDS)) for _ in range(length)]
