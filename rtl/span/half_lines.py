@@ -47,8 +47,8 @@ def half_lines(
         clk: the clock.
         reset: flag; synchronous reset, which ends the walk.
         start: strobe; begins with the rectangles of this chain.
-        chain: `Chain`; constant from start to done.
-        rects: `Rects`; index and fetch are outputs. A rectangle is read up to the cycle of opened.
+        chain: `Chain`; constant from the cycle after start to done.
+        rects: `Rects`; index and fetch are outputs.
         from_light: flag, read with `config.light`; the chain's rays come from the light. Constant from start to done.
         asks: output `Asks`; only ask and query are driven.
         answer: `Answer`.
@@ -66,14 +66,16 @@ def half_lines(
     asked_axis = unsigned(AXIS_BITS)
     waiting, candidates, others = (unsigned(count) for _ in range(3))
     lowest, upcoming, index = (unsigned(index_width) for _ in range(3))
-    offered, at_hand, take, fetch, moving = (bit() for _ in range(5))
+    offered, at_hand, passes, weighed, take, fetch, moving = (bit() for _ in range(7))
     fore_left, fore_right, aft_left, aft_right = (unsigned(3) for _ in range(4))
     may_vanish = bit()
 
     position, eye_a, n = signed(far_bits), signed(far_bits), signed(far_bits + 1)
     distance = unsigned(far_bits - 1)
     flipped, fore_left_a, fore_right_a, aft_left_a, aft_right_a = (bit() for _ in range(5))
-    point, back, ahead_left, ahead_right, skip, tested_ahead, ready, accept = (bit() for _ in range(8))
+    point, back, apart, ahead_left, ahead_right, skip, tested_ahead, ready, accept = (bit() for _ in range(9))
+    weighed_rect, weighed_entry = Rect(config), entry.twin()
+    weighed_point, weighed_apart = bit(), bit()
 
     issuing, last = bit(), bit()
     number = unsigned(NUMBER_BITS)
@@ -173,7 +175,8 @@ def half_lines(
 
     @always_comb
     def see_fetch():
-        fetch.next = offered and (seeing or walking) and (take or not at_hand)
+        passes.next = at_hand and (take or not weighed)
+        fetch.next = offered and (seeing or walking) and ((not at_hand) or take or not weighed)
 
     @always_comb
     def show_fetch():
@@ -198,13 +201,18 @@ def half_lines(
             at_hand.next = False
         elif fetch:
             at_hand.next = True
-        elif take:
+        elif passes:
             at_hand.next = False
 
     choices = [
         by_axis(rects.rect.axis, *values, chosen, width=len(chosen))
         for values, chosen in (
             ((chain.eye_x, chain.eye_y, chain.eye_z), eye_a), ((chain.back_x, chain.back_y, chain.back_z), flipped),
+        )
+    ]  # fmt: skip
+    signs = [
+        by_axis(weighed_entry.axis, *values, chosen, width=len(chosen))
+        for values, chosen in (
             ((fore_left(0), fore_left(1), fore_left(2)), fore_left_a),
             ((fore_right(0), fore_right(1), fore_right(2)), fore_right_a),
             ((aft_left(0), aft_left(1), aft_left(2)), aft_left_a),
@@ -227,36 +235,52 @@ def half_lines(
         back.next = flipped != (n < 0)
 
     @always_comb
+    def see_point():
+        point.next = (rects.rect.u_low == rects.rect.u_high) and (rects.rect.v_low == rects.rect.v_high)
+        apart.next = (n == 0) or hidden
+
+    met_rectangle = weighed_entry.joined(
+        index=index, axis=rects.rect.axis, back=back, distance=distance, start=no_columns, stop=no_columns
+    )
+
+    # The first rectangle is weighed before the signs are there.
+    @always(clk.posedge)
+    def weigh():
+        if reset or start:
+            weighed.next = False
+        elif passes:
+            weighed.next = True
+        elif take:
+            weighed.next = False
+        if passes:
+            weighed_rect.word.next = rects.rect.word
+            weighed_entry.word.next = met_rectangle
+            weighed_point.next = point
+            weighed_apart.next = apart
+
+    @always_comb
     def see_ends():
         ahead_left.next = fore_left_a
         ahead_right.next = fore_right_a
-        if back:
+        if weighed_entry.back:
             ahead_left.next = aft_left_a
             ahead_right.next = aft_right_a
 
     @always_comb
-    def see_point():
-        point.next = (rects.rect.u_low == rects.rect.u_high) and (rects.rect.v_low == rects.rect.v_high)
-
-    @always_comb
     def judge():
-        skip.next = (n == 0) or hidden or not (ahead_left or ahead_right)
-        tested_ahead.next = lit or ((ahead_left != ahead_right) and (point or may_vanish))
+        skip.next = weighed_apart or not (ahead_left or ahead_right)
+        tested_ahead.next = lit or ((ahead_left != ahead_right) and (weighed_point or may_vanish))
         ready.next = (not issuing) or last
 
     @always_comb
     def decide():
-        take.next = walking and at_hand and (skip or ready)
-        accept.next = walking and at_hand and ready and not skip
-
-    met_rectangle = entry.joined(
-        index=index, axis=rects.rect.axis, back=back, distance=distance, start=no_columns, stop=no_columns
-    )
+        take.next = walking and weighed and (skip or ready)
+        accept.next = walking and weighed and ready and not skip
 
     @always_comb
     def announce():
         opened.next = accept
-        entry.word.next = met_rectangle
+        entry.word.next = weighed_entry.word
 
     @always(clk.posedge)
     def issue():
@@ -276,12 +300,12 @@ def half_lines(
     @always(clk.posedge)
     def hold():
         if accept:
-            rect_1.word.next = rects.rect.word
+            rect_1.word.next = weighed_rect.word
             entry_1.word.next = entry.word
 
     @always_comb
     def see_end():
-        walked.next = walking and not (offered or at_hand or issuing)
+        walked.next = walking and not (offered or at_hand or weighed or issuing)
 
     # The lines of the rectangle that is held.
     @always_comb
@@ -349,10 +373,14 @@ def half_lines(
             if crosses_1:
                 last_number.next = BEYOND
 
+        weighed_crosses = bit()
+
         @always(clk.posedge)
         def hold_side():
+            if passes:
+                weighed_crosses.next = crosses
             if accept:
-                crosses_1.next = crosses
+                crosses_1.next = weighed_crosses
 
     @always_comb
     def choose_line():

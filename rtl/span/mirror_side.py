@@ -18,7 +18,7 @@ def mirror_side(clk, chain, rect, hidden, crosses, config: Configuration):
 
     Args:
         clk: the clock.
-        chain: `Chain`; constant from two cycles before the rectangle's.
+        chain: `Chain`; constant from the cycle before the rectangle's on.
         rect: `Rect`.
         hidden: output flag; no point of the rectangle is met, as it is before the plane, or on it and parallel to it.
             Combinational from rect, like crosses.

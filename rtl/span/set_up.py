@@ -20,7 +20,7 @@ def set_up(
         clk: the clock.
         reset: flag; synchronous reset to idle.
         start: strobe; takes a chain while idle.
-        chain: `Chain`; constant from the cycle before start to done.
+        chain: `Chain`; constant from the cycle after start to done.
         from_light: flag, read with `config.light`; the chain's rays come from the light. Constant like chain.
         rects: `Rects`; index and fetch are outputs.
         asks: output `Asks`.
