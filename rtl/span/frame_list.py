@@ -113,10 +113,10 @@ def frame_list(
             for i in range(units)
         ]  # fmt: skip
 
-        # The units go on for a cycle.
+        # The units go on for a cycle, so their queues are emptied when they are reset.
         @always_comb
         def empty():
-            emptied.next = dropped or stop
+            emptied.next = reset or stop
 
         @always_comb
         def collect():

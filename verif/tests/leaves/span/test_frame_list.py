@@ -82,14 +82,12 @@ def test_frame_list(units, pixels, doubling, clocks, queue, pace, leaf_of, rando
                 picture = [0] * COLUMNS if switch.shown is None else pixels_of(switch.shown[row])
                 leaf.expected[cycle + 1]["shown"] = side_by_side(picture[column : column + pixels], PIXEL_BITS)
                 seen["pictures"] += switch.shown is not None and beam.place == (0, 0)
-        dropped = bool(reset or full)
+        dropped, cleared = bool(reset or full), bool(reset or stops)
         for number, drawer in enumerate(drawers):
             taken = offered[number] is not None and ready[number]
             assert ready[number] or units == 1 or not drawer.runs  # with room for a row, a unit never waits
-            queues[number].clock(
-                offered[number], bool(number == collector.turn and take and units > 1), dropped or stops
-            )
-            drawer.clock(taken, frame[dealer.row] if start == number else None, bool(reset or stops))
+            queues[number].clock(offered[number], bool(number == collector.turn and take and units > 1), cleared)
+            drawer.clock(taken, frame[dealer.row] if start == number else None, cleared)
         dealer.clock(bool(new_frame), start, done, dropped)
         collector.clock(bool(new_frame), ENTRIES * switch.upper, head, dropped)
         if new_frame:
