@@ -138,4 +138,7 @@ def _reason(error: Exception) -> str:
 def add_port_options(parser: CommandParser) -> None:
     """Add `--port` and `--baud`."""
     parser.add_argument("--port", required=True, help="serial port of the board, such as /dev/ttyUSB0 or COM3")
-    parser.add_argument("--baud", type=int, default=USUAL_BAUD, help="BAUD of its design (default: %(default)s)")
+    # Help leaves out what has the name of a design's option.
+    parser.add_argument(
+        "--baud", dest="rate", type=int, default=USUAL_BAUD, help="bits per second, as in the design (%(default)s)"
+    )

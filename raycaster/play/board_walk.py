@@ -50,7 +50,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     arguments = command_parser().parse_args(argv)
     if not sys.stdin.isatty():
         raise UserError("walk: takes keys from a terminal; run it in one")
-    board = Board(arguments.port, arguments.baud)
+    board = Board(arguments.port, arguments.rate)
     walker = Walker(board.scene(arguments.scene), board.config)
     board.write(walker.load())
     Console().print(HELP)

@@ -23,7 +23,7 @@ def command_parser() -> CommandParser:
 def main(argv: Sequence[str] | None = None) -> None:
     """Run the command."""
     arguments = command_parser().parse_args(argv)
-    board = Board(arguments.port, arguments.baud)
+    board = Board(arguments.port, arguments.rate)
     scene = board.scene(arguments.scene)
     board.write(scene_words(scene, board.config))
     held = board.config.rectangles
