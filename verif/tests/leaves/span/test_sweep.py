@@ -57,7 +57,9 @@ def test_sweep(count, leaf_of, random):
     leaf = leaf_of(chain_bench, config, **chain_ports(config))
     seen = {"spans": 0, "gaps": 0, "divisions": 0, "orders": 0}
     leaf.case({"reset": 1})
-    for _ in range(leaf.some(300)):
+    for drawn in range(2000):
+        if drawn >= leaf.some(300) and (leaf.few or min(seen.values()) > 10):
+            break
         slope = [
             Line(int(random.integers(-3000, 3000)), int(random.choice([0, *random.integers(-60, 60, 3)])))
             for _ in range(3)
