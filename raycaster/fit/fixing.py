@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.complaints import as_typed
-from raycaster.configuration import FEATURES, MOST_RECTANGLES, Configuration, Facts
+from raycaster.configuration import FEATURES, Configuration
 from raycaster.design.decide import configure
 from raycaster.design.for_scene import Design, design_for
 from raycaster.errors import UserError
@@ -20,7 +20,7 @@ from raycaster.fixed import FixedRectangle, FixedScene
 from raycaster.golden.frames import runs_of, scene_rows
 from raycaster.golden.world import Rectangles
 from raycaster.output import Console, Table
-from raycaster.scene import Rectangle, Scene, load_scene
+from raycaster.scene import Rectangle, Scene
 
 SCOPES = {
     "rects": "rectangles are constants, the camera is live",
@@ -176,14 +176,11 @@ def general_design(path: Path, options: Mapping[str, Any]) -> Design:
     """Return the design that shows a scene, and any other: the default one, or one that is large enough for the scene.
 
     Raises:
-        UserError: see `design_for`, except that the row budget is ignored and up to `MOST_RECTANGLES` are allowed.
+        UserError: see `design_for`, except that the row budget is ignored.
     """
-    underrun = {"allow_underrun": True}
-    for room in ({}, underrun):
-        with suppress(UserError):
-            return design_for(path, {**options, **room})
-    held = max(Facts.rectangles, len(load_scene(path).rect))
-    return design_for(path, {**options, **underrun, "rectangles": min(held, MOST_RECTANGLES)})
+    with suppress(UserError):
+        return design_for(path, options)
+    return design_for(path, {**options, "allow_underrun": True})
 
 
 def _omissions(scene: Scene, reasons: Sequence[Mapping[int, str]], *, with_shadows: bool) -> list[tuple[str, str]]:

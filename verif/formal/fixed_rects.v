@@ -84,8 +84,8 @@ fixed_rects_slot #(RECT_BITS, SCENE_2, KEPT) slot_2 (
 // Covers fetches of one rectangle after another.
 reg [1:0] before = 0;
 always @(posedge clk) if (rects_fetch) before <= rects_index;
-always @* cover (known && rects_fetch && rects_index == 2 && before == 0);
-always @* cover (known && rects_fetch && rects_index == 0 && before == 2);
+always @* cover (fetched && rects_fetch && rects_index == 2 && before == 0);
+always @* cover (fetched && rects_fetch && rects_index == 0 && before == 2);
 endmodule
 
 // One slot: its written words, and each copy that is from the scene, compared with the result of a second sorter.

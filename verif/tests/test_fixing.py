@@ -325,7 +325,7 @@ def test_more_rectangles_than_the_default_has(tmp_path):
     scene, text = tmp_path / "many.toml", BOXES.read_text()
     scene.write_text(f"{text}[[rect]]{text.split('[[rect]]')[1]}")
     found = list(search.candidates(scene, {"screen": "tiny"}, ("all",), None))
-    assert {one.configuration.rectangles for one in found if one.scope == "general"} == {32}
+    assert {one.configuration.rectangles for one in found if one.scope == "general"} == {13}
     assert max(one.configuration.rectangles for one in found if one.scope == "all") <= 12
 
 
