@@ -46,12 +46,17 @@ def writes(pairs: Iterable[tuple[int, int]]) -> list[int]:
     return [word for address, words in (*runs, (commit[0], [commit[1]])) for word in access(address, words)]
 
 
+def count_of(first: int) -> int:
+    """Return an access's number of words, from its first word."""
+    return (first >> ADDRESS_BITS) % (1 << COUNT_BITS)
+
+
 def last_access(words: Sequence[int]) -> int:
     """Return the first word of a frame's last access, with which the answer begins."""
     at = 0
     while True:
         first = words[at]
-        at += 1 + (first >> ADDRESS_BITS) % (1 << COUNT_BITS)
+        at += 1 + count_of(first)
         if not first >> WRITE_BIT or at >= len(words):
             return first
 

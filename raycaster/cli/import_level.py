@@ -31,6 +31,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     if output.exists() and not (output.is_file() and output.read_bytes().startswith(MARK.encode())):
         raise UserError(f"{output}: is there already, and was not made by raycaster import; choose another --output")
     scene = load_level(arguments.map)
-    output.write_text(f"{MARK} from {arguments.map.name}.\n{dump_scene(scene)}", encoding="utf-8")
+    partial = output.with_name(f"{output.name}.partial")
+    partial.write_text(f"{MARK} from {arguments.map.name}.\n{dump_scene(scene)}", encoding="utf-8")
+    partial.replace(output)
     count, walk = len(scene.rect), command_line("play", output)
     Console().print(f"{output}: {count} rectangle{'s' * (count > 1)}; to walk through it: {walk}", soft_wrap=True)

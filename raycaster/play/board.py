@@ -19,23 +19,13 @@ from raycaster.errors import UserError
 from raycaster.registers import register_map
 from raycaster.rtl.engines import ENGINES
 from raycaster.scene import Scene, load_scene
-from raycaster.serial_frames import (
-    ADDRESS_BITS,
-    COUNT_BITS,
-    LEAD,
-    WRITE_BIT,
-    FrameDecoder,
-    access,
-    framed,
-    last_access,
-    writes,
-)
+from raycaster.serial_frames import LEAD, WRITE_BIT, FrameDecoder, access, count_of, framed, last_access, writes
 
 PATIENCE = 0.3
 """Seconds for which an answer may take, besides the time on the line."""
 
 ATTEMPTS = 3
-"""How often a frame is sent that is not answered."""
+"""How many times a frame is sent without an answer."""
 
 
 class Board:
@@ -68,7 +58,7 @@ class Board:
             UserError: there is no answer.
         """
         first = last_access(words)
-        length = 1 + (0 if first >> WRITE_BIT else (first >> ADDRESS_BITS) % (1 << COUNT_BITS))
+        length = 1 + (0 if first >> WRITE_BIT else count_of(first))
         data = bytes([LEAD]) + framed(words)
         try:
             for _ in range(ATTEMPTS):

@@ -6,7 +6,7 @@ from myhdl import always, block, instances
 
 @block
 def bank_choice(clk, run_0, run_1, run_2, run_3, run):
-    """Register the run of up to four banks, of which all but one show 0.
+    """Register the run of up to four banks; all but one of them show 0.
 
     Args:
         clk: the clock.

@@ -6,8 +6,8 @@
 // `sign-change`, the sign changes q + 1 columns further. A division may start in each cycle, so others are in the
 // pipeline with the picked one.
 //
-// Assumed: a cycle of reset at first, and a growth that fits the divisor. The count is claimed if it fits, which it does
-// within the screen.
+// Assumed: a cycle of reset at first, and a growth that fits the divisor. The claim is about counts that fit, as all do
+// that lead to a column of the screen.
 //
 // [proof]
 // claim = "the column at which a line's sign changes is 1 + floor(y / g) columns further, with a division per cycle"
