@@ -12,8 +12,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from raycaster.hdl.internals import Block, SignalType
-
 REWORDED = {
     r"Signal has multiple drivers: (\w+)": r"\1 or a signal that it is cut from has two drivers; connect a new signal",
     r"Free variable should be a Signal or an int: (\w+)": r"\1 is neither a signal nor an int, and Verilog's "
@@ -50,6 +48,8 @@ def fault_in_block(error: BaseException, converters: tuple[str, ...] = ()) -> st
         error: the error, with its traceback.
         converters: beginnings of the names of modules in which no fault can be, as they only call the conversion.
     """
+    from raycaster.hdl.internals import Block, SignalType  # noqa: PLC0415 - MyHDL takes time to load
+
     if found := re.fullmatch(r"in file (.+), line (\d+):\s*(.*)", str(error), re.DOTALL):
         return f"{found[1]}:{found[2]}: {_reworded(found[3])}"
     if isinstance(error, SyntaxError):

@@ -3,36 +3,38 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration
-from raycaster.rtl.buffered.ray_caster_renderer import ray_caster_renderer
 from raycaster.rtl.engine.engine import Engine
 
 GROUP_OVERHEAD = 4
 """Fixed cycles per group: the write to the line buffer with the two-cycle reset, idling, ray generation."""
 
+Blocks = tuple[Callable[..., Any], Callable[..., Any]]
+"""The block that operates all units, and the block of one unit."""
 
-@dataclass(frozen=True, eq=False)
+
 class LineBufferedEngine(Engine):
-    """An engine whose units fill a line buffer, a group of neighbouring columns at a time.
+    """An engine whose units fill a line buffer, a group of neighbouring columns at a time."""
 
-    Attributes:
-        control: the block that operates all units.
-        unit: the block of one unit.
-    """
-
-    control: Callable[..., Any]
-    unit: Callable[..., Any]
+    @property
+    @abstractmethod
+    def blocks(self) -> Blocks:
+        """The engine's control and unit."""
 
     @property
     def renderer(self) -> Callable[..., Any]:
         """`ray_caster_renderer` with this engine's units."""
-        return partial(ray_caster_renderer, control=self.control, unit=self.unit)
+        from raycaster.rtl.buffered.ray_caster_renderer import ray_caster_renderer
+
+        control, unit = self.blocks
+        return partial(ray_caster_renderer, control=control, unit=unit)
 
     def group_cycles(self, config: Configuration) -> int:
         """Add the cycles for the rectangles of each pass, the latency of each pass, and the overhead of a group."""

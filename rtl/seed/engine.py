@@ -6,9 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from raycaster.configuration import Configuration, Facts, Options
-from raycaster.rtl.buffered.engine import LineBufferedEngine
-from raycaster.rtl.seed.ray_control import LOAD_AT, WRITE_AFTER, ray_control
-from raycaster.rtl.seed.ray_unit import ray_unit
+from raycaster.rtl.buffered.engine import Blocks, LineBufferedEngine
 from raycaster.screens import SCREENS
 
 UNIT_CELLS = {1: 559, 2: 607, 3: 647}
@@ -22,6 +20,14 @@ class Seed(LineBufferedEngine):
 
     A rounded coordinate is off by less than one, and the depth is measured along x.
     """
+
+    @property
+    def blocks(self) -> Blocks:
+        """`ray_control` and `ray_unit`."""
+        from raycaster.rtl.seed.ray_control import ray_control
+        from raycaster.rtl.seed.ray_unit import ray_unit
+
+        return ray_control, ray_unit
 
     def sized(self, config: Configuration, options: Options) -> Configuration:
         """Take 32 units, or the fewest that a fixed scene needs, and the smallest divider that meets the row budget."""
@@ -50,6 +56,8 @@ class Seed(LineBufferedEngine):
 
     def pass_latency(self, config: Configuration) -> int:
         """Add the stages: slope and plane latched, product, divider loaded, hit point, depth compared, ray stored."""
+        from raycaster.rtl.seed.ray_control import LOAD_AT, WRITE_AFTER
+
         return LOAD_AT + WRITE_AFTER + 2
 
 
@@ -60,7 +68,5 @@ SEED = Seed(
             "turn": "the seed engine measures depth along x, so its camera cannot turn",
             "light": "the seed engine rounds the points from which shadows would be cast",
         },
-    ),
-    control=ray_control,
-    unit=ray_unit,
+    )
 )  # fmt: skip

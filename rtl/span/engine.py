@@ -9,7 +9,6 @@ from typing import Any
 
 from raycaster.configuration import MOST_RECTANGLES, Configuration, Facts, Options
 from raycaster.rtl.engine.engine import Engine, check_pairs
-from raycaster.rtl.span.span_renderer import span_renderer
 from raycaster.screens import LIST_SCREENS
 
 RUNS_PER_ROW = 120
@@ -22,6 +21,8 @@ class Span(Engine):
     @property
     def renderer(self) -> Callable[..., Any]:
         """`span_renderer`."""
+        from raycaster.rtl.span.span_renderer import span_renderer
+
         return span_renderer
 
     def refuse(self, options: Options) -> None:

@@ -115,6 +115,13 @@ def test_help_and_completions_without_an_extra():
     assert re.search("raycaster_report_option_strings=.*--quick", done.stdout)
 
 
+def test_help_without_the_hardware():
+    """The list of commands does not load MyHDL and the blocks, which would take as long as everything else."""
+    code = "import sys; sys.modules['myhdl'] = None; from raycaster.cli.__main__ import run; run()"
+    done = subprocess.run([sys.executable, "-c", code, "--help"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 @pytest.mark.parametrize(
     ("asked", "meant"),
     [("smi", "sim"), ("verify-al", "verify-all"), ("lnit", "lint")],
