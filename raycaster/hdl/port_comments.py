@@ -11,6 +11,8 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from myhdl import ResetSignal
+
 from raycaster.hdl.records import Interface, Record
 
 CLOCK = "the clock."
@@ -51,10 +53,17 @@ class Comments:
         The text of an interface goes above the first of its ports, after a name for all of them, as in `vga_*`. Above
         each of its ports goes the class's text about that attribute. A record's port has the bits of each field.
 
+        A reset that has no text gets one from its signal.
+
         Args:
             ports: names, in order; those of a record or an interface begin with the argument's name.
         """
         comments = dict.fromkeys(ports, "")
+        resets = {
+            name: f"{'a' * one.isasync}synchronous, active {'high' if one.active else 'low'}."
+            for name, one in self._given.items()
+            if isinstance(one, ResetSignal)
+        }
 
         def add(port: str | None, text: str) -> None:
             if port in comments:
@@ -69,7 +78,7 @@ class Comments:
                 bits = (f"[{high}:{low}] {name}" if high > low else f"[{low}] {name}" for name, high, low in places)
                 add(f"{port}_word", f"{', '.join(bits)}.")
 
-        for argument, text in self._texts.items():
+        for argument, text in {**resets, **self._texts}.items():
             value = self._given.get(argument)
             is_group = isinstance(value, Interface)
             if text != CLOCK:

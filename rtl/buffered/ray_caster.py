@@ -24,7 +24,6 @@ def ray_caster(
     It starts when enable is high and reset_ray_caster low. place and the scene must then be stable until done.
 
     Args:
-        clk: the clock.
         reset_ray_caster: synchronous, active high.
         enable: flag; starts a group.
         place: `Place` of the group.
@@ -34,7 +33,6 @@ def ray_caster(
         done: flag; output, the group is complete. It stays high until reset_ray_caster.
         pixels: unsigned, a `Pixel` word of `pixel_bits` bits for each of the `config.units` units, unit 0 in the lowest
             bits; output, valid from done to reset_ray_caster.
-        config: the design.
         control: the engine's block that operates all units.
         unit: the engine's block of one unit.
     """

@@ -27,15 +27,12 @@ def ray_caster_renderer(
     abandoned, and columns that were not written keep the old pixels of that half of the buffer.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         picture: `Picture` of the live scene.
         camera: `Camera` of the live scene.
         rects: `Rects`; drives index and fetch, reads usable and rect.
         progress: `Progress`; output. underrun comes at the end of a row's time if the row is not complete; row_cycles
             and group_cycles saturate.
         vga: `Vga`; output.
-        config: the design.
         control: the engine's block that operates all units.
         unit: the engine's block of one unit.
     """

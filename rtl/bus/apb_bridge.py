@@ -42,8 +42,6 @@ def apb_bridge(clk, reset, s_apb, avm_m0):
     the agent takes two cycles. The agent must ignore byteenable for reads.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         s_apb: `ApbPort`, this block as the completer: drives pready, prdata and pslverr, reads the rest.
         avm_m0: `AvalonPort`, this block as the host: reads readdata, readdatavalid and waitrequest, drives the rest.
     """

@@ -15,8 +15,6 @@ def avalon_host(clk, reset, access, strobe, address, data, avm_m0):
     it accepts it.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         access: `Access`; reads select, drives ready and word.
         strobe: unsigned, 4 bits; the bytes of data to write, or 0 for a read. Stable while access.select is high.
         address: unsigned, as wide as avm_m0.address; word address. Stable while access.select is high.

@@ -64,8 +64,6 @@ def avalon_interface(
     take effect in the cycle after they are accepted, before any later read is answered.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         avs_s0: `AvalonPort`, this block as the agent: drives readdata, readdatavalid and waitrequest, reads the rest.
         irq: level; output, high while the StartScreen interrupt is pending and enabled.
         bus: `SceneBus`; output.
@@ -76,7 +74,6 @@ def avalon_interface(
         bad_rectangle: flag; the shadow holds an enabled rectangle without a plane. Read with bus.commit.
         picture: `Picture`; output. With a fixed camera only run is driven.
         progress: `Progress`; input.
-        config: the design.
     """
     live = not (config.fixed and config.fixed.camera)
     whole_frames = config.facts.whole_frames

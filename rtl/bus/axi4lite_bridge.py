@@ -54,8 +54,6 @@ def axi4lite_bridge(clk, reset, s_axi, avm_m0):
     answer, and ignore byteenable for reads, which is don't care there.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         s_axi: `Axi4LitePort`, this block as the subordinate: drives awready, wready, bresp, bvalid, arready, rdata,
             rresp and rvalid, reads the rest.
         avm_m0: `AvalonPort`, this block as the host: reads readdata, readdatavalid and waitrequest, drives the rest.

@@ -22,7 +22,6 @@ def frame_check(clk, clear, add, data, state):
     """Compute a frame's CRC-32, a bit of each byte per cycle, in `CHECK_CYCLES` cycles.
 
     Args:
-        clk: the clock.
         clear: strobe; a frame begins.
         add: strobe; the frame's next byte.
         data: unsigned, 8 bits; read with add.

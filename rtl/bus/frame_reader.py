@@ -19,8 +19,6 @@ def frame_reader(clk, reset, received, data, good, words, place, shown, places: 
     before it, and the next frame is read.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         received: strobe, at least `CHECK_CYCLES` cycles after the one before.
         data: unsigned, 8 bits; the byte on the line, read with received.
         good: output strobe, in the cycle after a frame's last flag.

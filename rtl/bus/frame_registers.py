@@ -13,8 +13,6 @@ def frame_registers(clk, reset, bus, events, rect_readback, readback, rectangles
     """Keep what became of frames, for software: the registers `frames` of the map.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         bus: `SceneBus`; write, address, data and mask are read.
         events: `FrameEvents`; input.
         rect_readback: unsigned, 32 bits; the rectangle memory's word at bus.address.

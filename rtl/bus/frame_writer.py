@@ -17,8 +17,6 @@ def frame_writer(clk, reset, start, valid, word, last, ready, sending, data, acc
     """Send words as a frame: a flag, the words, their check, and a flag; `frame_reader` describes it.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         start: strobe; a frame begins. A frame that was being sent ends there, without its check.
         valid: flag; word waits to be accepted.
         word: unsigned, 32 bits; held, like last, until accepted.

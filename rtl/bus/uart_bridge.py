@@ -55,7 +55,6 @@ def uart_bridge(clk, reset, uart, avm_m0, clock_hz: int, baud: int, places: int)
 
     Args:
         clk: the clock, `clock_hz` Hz.
-        reset: synchronous, active high.
         uart: `UartPort`, of this block: drives tx, reads rx.
         avm_m0: `AvalonPort`, this block as the host: reads readdata, readdatavalid and waitrequest, drives the rest.
         clock_hz: frequency of the clock.

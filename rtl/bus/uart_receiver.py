@@ -18,7 +18,6 @@ def uart_receiver(clk, reset, uart_rx, received, data, clock_hz: int, baud: int)
 
     Args:
         clk: the clock, `clock_hz` Hz.
-        reset: synchronous, active high.
         uart_rx: the line, high while nothing is sent; it may change at any time.
         received: output strobe, in the cycle after the middle of the stop bit.
         data: unsigned, 8 bits; output, valid with received and until the next start bit.

@@ -17,7 +17,6 @@ def uart_transmitter(clk, reset, valid, data, ready, uart_tx, clock_hz: int, bau
 
     Args:
         clk: the clock, `clock_hz` Hz.
-        reset: synchronous, active high.
         valid: flag; data waits to be accepted.
         data: unsigned, 8 bits; read in the cycle in which valid and ready are high.
         ready: output flag; data is accepted at the end of this cycle. Low while a byte is being sent.

@@ -39,8 +39,6 @@ def wishbone_bridge(clk, reset, wb, avm_m0):
     its answer is then not acknowledged, and the next access waits for it. The agent must ignore byteenable for reads.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         wb: `WishbonePort`, this block as the slave: drives ack and dat_r, reads the rest.
         avm_m0: `AvalonPort`, this block as the host: reads readdata, readdatavalid and waitrequest, drives the rest.
     """

@@ -22,7 +22,6 @@ def word_memory(clk, reset, access, strobe, address, data, words: int, program: 
     """Hold the processor's program and data; an access takes two cycles.
 
     Args:
-        clk: the clock.
         reset: synchronous, active high; does not restore the words that the memory had at power-up.
         access: `Access`; reads select, drives ready and word. ready is high in the second cycle of an access, with the
             word that was read.

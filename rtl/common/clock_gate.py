@@ -17,7 +17,6 @@ def clock_gate(clk, reset, awake, gated_clk):
     must work with either clock. MyHDL does not simulate the gate.
 
     Args:
-        clk: the clock.
         reset: synchronous, active high; the clock runs during reset.
         awake: flag, from registers of clk; low when the clock may stop.
         gated_clk: output; a `derived_clock` of clk.

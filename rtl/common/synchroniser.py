@@ -13,7 +13,6 @@ def synchroniser(clk, reset, value, held):
     There are two registers in series, because the first may become metastable.
 
     Args:
-        clk: the clock.
         reset: synchronous reset, which sets both registers to 0. None for registers without reset.
         value: flag or unsigned; may change at any time.
         held: output, as wide as value; value, two cycles later.

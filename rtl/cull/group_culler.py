@@ -27,7 +27,6 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
     previous group's start_group.
 
     Args:
-        clk: the clock.
         reset_ray_caster: flag; synchronous reset between two groups, of at least two cycles.
         start_group: strobe; the group at place starts.
         done: flag; the group at place has been traced.
@@ -36,7 +35,6 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
         rects: `Rects` of the engine; all inputs here, as in rect_copy.
         may_hit: unsigned output, `config.rectangles` bits, one per rectangle; 0 if no primary ray of the group at place
             hits it.
-        config: the design.
     """
     units, rectangles = config.units, config.rectangles
     slope_bits = exact_slope_bits(config) + 1

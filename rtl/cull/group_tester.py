@@ -17,7 +17,6 @@ def group_tester(clk, load, facet, growth, start, column_slope, row_slope, may_h
     is a shift for a power of two.
 
     Args:
-        clk: the clock.
         load: unsigned, `config.rectangles` bits, one per rectangle; high when facet, growth and start belong to that
             rectangle.
         facet: `Facet` of the rectangle; read with load.
@@ -27,7 +26,6 @@ def group_tester(clk, load, facet, growth, start, column_slope, row_slope, may_h
         row_slope: signed; the z slope of the group's row, read with load.
         may_hit: unsigned output, `config.rectangles` bits, one per rectangle; 1 if a ray of the group may hit it. Valid
             from the second cycle after the rectangle's bit of load.
-        config: the design.
     """
     walk_bits, units = len(start.way_p), config.units
 

@@ -14,12 +14,10 @@ def rect_copy(clk, rects, copy, margin: int, config: Configuration):
     """Store each rectangle that the engine fetches from rects, and present it to a second reader through copy.
 
     Args:
-        clk: the clock.
         rects: `Rects` of the engine; all inputs here, and rect comes a cycle after fetch.
         copy: `Rects` of the second reader; index and fetch are read. rect is an output, a `WideRect` with bounds margin
             further out, and comes two cycles after fetch; don't care if the engine has not fetched it.
         margin: distance by which the bounds are further out, in world units.
-        config: the design.
     """
     rect, bounds = rects.rect, ("u_low", "u_high", "v_low", "v_high")
     kept = Record({"axis": AXIS_BITS} | dict.fromkeys(("position", *bounds), COORDINATE_BITS))

@@ -29,7 +29,6 @@ def rect_setup(
     The products are made of adders, as the engine's units may need all of the chip's multipliers.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset, which ends the sweep.
         start_line: strobe; starts a sweep through all rectangles.
         rects: `Rects`; index and fetch are outputs, and rect, a `WideRect`, comes two cycles after fetch.
@@ -40,7 +39,6 @@ def rect_setup(
         facet: output `Facet` of the rectangle; valid with its bit of load.
         growth: output `Walk`; the change of start per column, valid with load.
         start: output `Walk` of the first column; valid with load.
-        config: the design.
     """
     slope_bits = exact_slope_bits(config) + 1
     bound_bits = len(growth.low_p)

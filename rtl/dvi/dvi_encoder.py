@@ -17,7 +17,6 @@ def dvi_encoder(clk, pixel_end, vga, blue, green, red, pixel):
     and stay for one pixel.
 
     Args:
-        clk: the clock.
         pixel_end: flag; high in the last cycle of a pixel, which takes one or two cycles of clk.
         vga: `Vga` of ray_caster_module, 8 bits per colour; r, g, b, hs, vs and blank_n are read.
         blue: unsigned output, 10 bits; the symbol of channel 0, stable for a pixel.

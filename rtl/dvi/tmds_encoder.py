@@ -21,7 +21,6 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
     Blanking resets the balance of ones and zeros.
 
     Args:
-        clk: the clock.
         enable: strobe, once per pixel; takes the inputs.
         data: unsigned, 8 bits; encoded in the picture. Read with enable.
         control: unsigned, 2 bits, c1 above c0; encoded in blanking. Read with enable.

@@ -18,7 +18,6 @@ def colour_combiner(clk, steps, found, found_colour, found_mirror, picture, miss
     From the first ray that misses on, the background is added.
 
     Args:
-        clk: the clock.
         steps: `Steps`; reset_colour, add_colour and store_ray are read.
         found: flag; the ray has a hit. Read with steps.add_colour.
         found_colour: unsigned, 24 bits; the colour of the hit, read with steps.add_colour.
@@ -28,7 +27,6 @@ def colour_combiner(clk, steps, found, found_colour, found_mirror, picture, miss
         missed: output flag; a ray has hit nothing, or no mirror, so later hits do not count. Valid from the cycle after
             that ray's steps.add_colour.
         pixel: output `Pixel`; valid from the cycle after the last steps.add_colour.
-        config: the design.
     """
     ray_colour = Colour()
     red, green, blue = (unsigned(config.colour_bits) for _ in range(3))

@@ -17,7 +17,6 @@ def colour_share(clk, steps, found, found_mirror, share, missed, config: Configu
     nothing; without `config.materials`, always half.
 
     Args:
-        clk: the clock.
         steps: `Steps`; reset_colour, add_colour and store_ray are read. With steps.add_colour, store_ray is low for the
             last ray.
         found: flag; the ray has a hit. Read with steps.add_colour.
@@ -27,7 +26,6 @@ def colour_share(clk, steps, found, found_mirror, share, missed, config: Configu
             when steps.add_colour is high.
         missed: output flag; a ray has hit nothing, or no mirror, so later hits do not count. Valid from the cycle after
             that ray's steps.add_colour.
-        config: the design.
     """
     bits = share_bits(config)
     whole = 1 << (bits - 1)

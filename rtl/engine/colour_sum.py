@@ -17,13 +17,11 @@ def colour_sum(clk, steps, channel, share, blended, config: Configuration):
     positions is set, and at most one in odd positions: share times channel is a sum of two terms.
 
     Args:
-        clk: the clock.
         steps: `Steps`; only reset_colour, which clears the sum, and add_colour are read.
         channel: unsigned, 8 bits; the channel of the ray's colour, read with steps.add_colour.
         share: unsigned, `share_bits` bits, from colour_share; read with steps.add_colour.
         blended: unsigned output, `config.colour_bits` bits; the top bits of the sum. Valid from the cycle after the
             last addition.
-        config: the design.
     """
     width = share_bits(config)
     sum_bits = CHANNEL_BITS + width - 1  # all shares add up to 1 << (width - 1)

@@ -18,14 +18,12 @@ def ray_generator(clk, steps, place, column_base, initial_signs, slope, config: 
     rectangles. Every primary ray starts at the camera, which needs no register here.
 
     Args:
-        clk: the clock.
         steps: `Steps`; only screen_to_ray is read.
         place: `Place` of the group; read with steps.screen_to_ray.
         column_base: unsigned, `unit_bits` bits; the unit's column within its group.
         initial_signs: output `Signs`, dx always 0; valid from the cycle after steps.screen_to_ray.
         slope: output `Slope`, the magnitudes, wide enough for the steepest slope on the screen; valid from the cycle
             after steps.screen_to_ray.
-        config: the design.
     """
     slope_bits = len(slope.dx)
     units = config.units

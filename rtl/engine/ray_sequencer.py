@@ -46,7 +46,6 @@ def ray_sequencer(
       in_flight; a cycle later the rectangle would be past that bit, and its division would be stored.
 
     Args:
-        clk: the clock.
         reset_ray_caster: flag; synchronous reset to idle.
         enable: flag, read while idle; starts a group of rays.
         picture: `Picture`; only reflections is read: 0 to `config.reflections`, stable while rendering.
@@ -63,7 +62,6 @@ def ray_sequencer(
             to 0 if rectangles are not ended early.
         done: output flag; all rays have been traced. High until reset_ray_caster.
         rect_cycles: cycles from one rectangle to the next.
-        config: the design.
     """
     write_at, dropped = len(in_flight) - 1, EARLY_OUT_AT
 

@@ -16,7 +16,6 @@ def rect_sequencer(
     """Give each wanted rectangle `rect_cycles` cycles, in ascending order, from the cycle after start_ray on.
 
     Args:
-        clk: the clock.
         reset_ray_caster: flag; synchronous reset, after which nothing is fetched.
         start_ray: strobe; the next cycle begins the first rectangle's test.
         wanted: unsigned, `config.rectangles` bits, one per rectangle; read in the cycle before start_ray.
@@ -27,7 +26,6 @@ def rect_sequencer(
         fetched: output flag; a test is under way, and the memory holds its rectangle.
         starting: output flag; first cycle of a test.
         rect_cycles: cycles of a test that does not end early.
-        config: the design.
     """
     rectangles = config.rectangles
     last_cycle = rect_cycles - 1

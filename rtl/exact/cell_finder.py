@@ -23,7 +23,6 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
     a hit the outputs are don't care. A cell as large as the world, or larger, is even.
 
     Args:
-        clk: the clock.
         steps: `Steps`; only load_divider and store_quotient are read.
         eye: `Vector`, E.
         signs: `Signs` of the slope D.

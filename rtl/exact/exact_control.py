@@ -29,7 +29,6 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
     Ports that ray_sequencer also has work as described there.
 
     Args:
-        clk: the clock.
         reset_ray_caster: flag; synchronous reset to idle.
         enable: flag, read while idle; starts a group of rays.
         picture: `Picture`; only reflections is read: 0 to `config.reflections`, stable while rendering.
@@ -41,7 +40,6 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
         offered: output `Surface`; in the cycle of steps.write_z_buf, the surface of the rectangle whose
             steps.find_intersection came three cycles before.
         done: output flag; all rays have been traced. High until reset_ray_caster.
-        config: the design.
     """
     in_flight = unsigned(WRITE_AT + 1 + (PATTERN_LATENCY if config.patterns else 0))
     first, second = Surface(config), Surface(config)

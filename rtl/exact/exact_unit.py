@@ -30,7 +30,6 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
     count. With `config.light` the tester also serves the shadow ray, in shadow passes.
 
     Args:
-        clk: the clock.
         steps: `Steps`, common to all units; initial_ray is not read.
         place: `Place`; the group of columns, read with steps.screen_to_ray. With `config.turn` it must be stable from
             the cycle before that on.
@@ -43,7 +42,6 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
         pixel: output `Pixel`; valid after the last step.
         fate: output `RayFate`; alive is driven with `config.culling` or `config.materials`, in_question with
             `config.light`.
-        config: the design.
     """
     initial_signs, signs = Signs(), Signs()
     slope, eye = Slope(exact_slope_bits(config)), Vector(eye_bits(config))

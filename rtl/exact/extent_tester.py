@@ -16,7 +16,6 @@ def extent_tester(
     axis is reversed for a negative D, and the last mirror's distance replaces the distance of a nearer bound.
 
     Args:
-        clk: the clock.
         step: strobe; takes low, high, eye, back, slope and on_mirror.
         low: unsigned; the lower bound, inclusive.
         high: unsigned, as wide as low; the upper bound, inclusive.

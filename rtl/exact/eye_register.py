@@ -19,7 +19,6 @@ def eye_register(
     the last mirror the image may not fit, and is don't care.
 
     Args:
-        clk: the clock.
         steps: `Steps`; only screen_to_ray and store_ray are read.
         camera: `Camera`; its position is read with steps.screen_to_ray.
         initial_signs: `Signs` of the primary ray; valid from the cycle after steps.screen_to_ray.

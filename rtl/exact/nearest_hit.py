@@ -28,7 +28,6 @@ def nearest_hit(
     describe the nearest hit, from the cycle after its write.
 
     Args:
-        clk: the clock.
         steps: `Steps`; only reset_z_buf and write_z_buf are read.
         offered: `Surface` of the offered rectangle; read with steps.write_z_buf.
         hit: flag; the ray hits the offered rectangle. Read with steps.write_z_buf.

@@ -32,7 +32,6 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
     be wide enough for any distance in the world.
 
     Args:
-        clk: the clock.
         steps: `Steps`; only find_intersection is read.
         rect: `Rect`; read with steps.find_intersection.
         eye: `Vector`, E; read with steps.find_intersection.

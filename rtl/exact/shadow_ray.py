@@ -24,7 +24,6 @@ def shadow_ray(
     steps.aim.
 
     Args:
-        clk: the clock.
         steps: `Steps`; only aim is read. All other inputs must be stable while it is not 0, and eye, signs, slope and
             camera also in the cycle before.
         camera: `Camera` with a light; only the light's position is read.

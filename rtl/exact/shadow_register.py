@@ -19,7 +19,6 @@ def shadow_register(clk, steps, in_question, hit, numerator, denominator, found_
     a register that chooses its ray, close to the multiplexers; one register for all units would be too slow.
 
     Args:
-        clk: the clock.
         steps: `Steps`; only reset_z_buf, aim and write_shadow are read.
         in_question: flag; `RayFate`'s, read in the last cycle of steps.aim.
         hit: flag; the shadow ray hits the rectangle. Read with steps.write_shadow.

@@ -18,7 +18,6 @@ def shadow_sequencer(clk, reset_ray_caster, shadow_pass, any_in_question, aim, f
     is in question; shadow_pass.stop then drops the tests in flight.
 
     Args:
-        clk: the clock.
         reset_ray_caster: flag; synchronous reset to idle.
         shadow_pass: `ShadowPass`; traced is read, and the rest is driven.
         any_in_question: flag of `GroupFate`; read in the last cycle of aim and in each cycle of the shadow pass, so it

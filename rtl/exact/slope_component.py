@@ -18,7 +18,6 @@ def slope_component(
     before that on.
 
     Args:
-        clk: the clock.
         steps: `Steps`; only screen_to_ray is read.
         forward: signed, 10 bits; a component of the camera's forward vector, times 256.
         right: signed, 10 bits; that component of the camera's right vector, times 256.
@@ -29,7 +28,6 @@ def slope_component(
         size: unsigned output, wide enough for the steepest slope on the screen; the magnitude. Valid from the cycle
             after steps.screen_to_ray.
         negative: output flag, the sign; valid from the cycle after steps.screen_to_ray.
-        config: the design.
     """
     view_distance = config.screen_geometry.view_distance
     # A group past the last one is legal, though nothing is loaded there: twice the steepest slope is more than enough.

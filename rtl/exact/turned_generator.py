@@ -20,7 +20,6 @@ def turned_generator(
     does not turn. The column is place.column_offset * `config.units` + column_base.
 
     Args:
-        clk: the clock.
         steps: `Steps`; only screen_to_ray is read, at which the ray is loaded.
         place: `Place` of the group; stable from the cycle before steps.screen_to_ray on.
         column_base: unsigned, `unit_bits` bits; the unit's column within its group, constant.
@@ -28,7 +27,6 @@ def turned_generator(
         initial_signs: output `Signs`; valid from the cycle after steps.screen_to_ray.
         slope: output `Slope`, the magnitudes, wide enough for the steepest slope on the screen; valid from the cycle
             after steps.screen_to_ray.
-        config: the design.
     """
     units = config.units
     screen = config.screen_geometry

@@ -17,7 +17,6 @@ def cell_parity(value, size, odd, config: Configuration):
         value: signed; a coordinate within the world, with `config.fraction_bits` fraction bits.
         size: unsigned, 3 bits; log2 of a cell's size in world units, minus three.
         odd: output flag; the lowest bit of floor(value / cell).
-        config: the design.
     """
     lowest = config.fraction_bits + SMALLEST_CELL_BITS
     sizes = COORDINATE_BITS - SMALLEST_CELL_BITS

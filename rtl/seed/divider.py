@@ -17,7 +17,6 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
     from load_divider to store_quotient; the next load_divider may coincide with that store_quotient.
 
     Args:
-        clk: the clock.
         load_divider: strobe; takes the operands.
         store_quotient: strobe, `config.divider_steps` cycles after load_divider; takes the result.
         dividend: unsigned, `product_bits` bits; read with load_divider.
@@ -26,7 +25,6 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
             store_quotient.
         overflow: output flag; the quotient needs more than `position_bits` bits, or the divisor is 0; the quotient is
             then don't care. Valid at the same times as quotient.
-        config: the design.
     """
     width = config.divider_bits * config.divider_steps
     bits_a_cycle = config.divider_bits

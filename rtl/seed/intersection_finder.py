@@ -24,7 +24,6 @@ def intersection_finder(
     after its steps.store_quotient, which is the cycle of steps.write_z_buf.
 
     Args:
-        clk: the clock.
         steps: `Steps`; find_intersection, load_divider and store_quotient are read.
         rect: `Rect` whose test starts; its axis and position are read with steps.find_intersection.
         offered: the same `Rect`, from the cycle after its steps.store_quotient on.
@@ -40,7 +39,6 @@ def intersection_finder(
         odd_v: output flag; the cell_parity of the point's v, valid with steps.write_z_buf. Driven with
             `config.patterns`.
         towards: output flag; the ray runs towards the plane. Valid from the cycle after steps.find_intersection.
-        config: the design.
     """
     fraction_bits, position_width = config.fraction_bits, position_bits(config)
 

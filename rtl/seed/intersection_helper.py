@@ -25,7 +25,6 @@ def intersection_helper(
     `config.divider_steps` cycles after the first.
 
     Args:
-        clk: the clock.
         steps: `Steps`; find_intersection, load_divider and store_quotient are read.
         a: unsigned, `position_bits` bits; taken in the cycle after steps.store_quotient.
         b: unsigned, 9 bits, magnitude of b; read with steps.find_intersection.
@@ -43,7 +42,6 @@ def intersection_helper(
             after steps.store_quotient.
         towards: output flag; e is not 0 and the ray runs towards the plane (c - d is not 0 and has e's sign). Valid
             from the cycle after steps.find_intersection.
-        config: the design.
     """
     position_width = position_bits(config)
     product_width = product_bits(config)

@@ -28,7 +28,6 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
     Ports that ray_sequencer also has work as described there.
 
     Args:
-        clk: the clock.
         reset_ray_caster: flag; synchronous reset to idle.
         enable: flag, read while idle; starts a group of rays.
         picture: `Picture`; only reflections is read: 0 to `config.reflections`, stable while rendering.
@@ -39,7 +38,6 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
             steps.find_intersection.
         offered: output `Rect`; the rectangle whose quotients were stored last.
         done: output flag; all rays have been traced. High until reset_ray_caster.
-        config: the design.
     """
     load_at = LOAD_AT - 1  # bit i of in_flight comes i + 1 cycles after find_intersection
     store_at = load_at + config.divider_steps

@@ -13,7 +13,6 @@ def ray_mem(clk, steps, found_axis, found_point, ray, reflected):
     The slope on the mirror's axis changes its sign; the slope's magnitudes do not change.
 
     Args:
-        clk: the clock.
         steps: `Steps`; only store_ray is read.
         found_axis: unsigned, 2 bits; the axis of the mirror's plane, 0, 1, 2 for x, y, z, read with steps.store_ray.
         found_point: `Origin`; the hit point, read with steps.store_ray.

@@ -25,7 +25,6 @@ def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pix
     count.
 
     Args:
-        clk: the clock.
         steps: `Steps`, common to all units.
         place: `Place`; the group of columns, read with steps.screen_to_ray.
         column_base: unsigned, `unit_bits` bits; the unit's column within its group, constant.
@@ -36,7 +35,6 @@ def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pix
         pixel: output `Pixel`; valid after the last step.
         fate: output `RayFate`; alive is driven with `config.culling` or `config.materials`, and towards if the control
             ends rectangles early.
-        config: the design.
     """
     fraction_bits = config.fraction_bits
 

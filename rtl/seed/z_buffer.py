@@ -19,7 +19,6 @@ def z_buffer(
     describe the nearest hit, from the cycle after its write.
 
     Args:
-        clk: the clock.
         steps: `Steps`; only reset_z_buf and write_z_buf are read. reset_z_buf has priority.
         offered: `Rect` of the offered hit; read with steps.write_z_buf.
         colour: unsigned, 24 bits; the colour of offered at point, read with steps.write_z_buf.
@@ -32,7 +31,6 @@ def z_buffer(
         found_mirror: unsigned output, 3 bits; the share that the rectangle of the nearest hit mirrors, 0 to 4 quarters.
             Driven with `config.materials`.
         found_point: output `Origin`; the nearest hit point.
-        config: the design.
     """
     nearest = unsigned(position_bits(config))
     nearer = bit()

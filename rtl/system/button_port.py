@@ -13,8 +13,6 @@ def button_port(clk, reset, buttons, irq, word):
     """Join the buttons and the ray tracer's interrupt into the word that the processor reads.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         buttons: unsigned, 5 bits, active high; from bit 0 on: left, right, up, down, fire, as in
             memory_map.BUTTON_NAMES. They may change at any time, and are seen two cycles later.
         irq: level; the ray tracer's interrupt.

@@ -15,7 +15,6 @@ def camera_axis(clk, reset, move, more, less, start, position):
     """Move a camera's coordinate by `STEP` in the direction of a button, and never out of the world.
 
     Args:
-        clk: the clock.
         reset: synchronous, active high; sets position to start.
         move: strobe, once per frame.
         more: flag; the button that raises the coordinate, read with move. Both buttons at once count as none.

@@ -51,7 +51,6 @@ def picorv32(
     misaligned access halts the processor until reset.
 
     Args:
-        clk: the clock.
         resetn: reset, synchronous, active low.
         mem_valid: flag; output, valid of `ProcessorBus`.
         mem_ready: flag; ready of `ProcessorBus`.

@@ -21,14 +21,11 @@ def processor_host(clk, reset, buttons, irq, uart_tx, avm_m0, config: Configurat
     """Run a program that accesses its devices at the addresses of memory_map.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         buttons: unsigned, 5 bits, active high, as in button_port; they may change at any time.
         irq: level; the ray tracer's interrupt, which the program polls.
         uart_tx: output of the serial port; high while nothing is sent.
         avm_m0: `AvalonPort` to the ray tracer's registers, this block as the host: reads readdata, readdatavalid and
             waitrequest, drives the rest.
-        config: the design.
         program: the file with the program, as in word_memory.
     """
     bus = ProcessorBus()

@@ -29,11 +29,9 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
 
     Args:
         clk: the clock, `config.screen_geometry.clock_hz` Hz.
-        reset: synchronous, active high.
         avs_s0: `AvalonPort`, this block as the agent; its addresses count 32-bit words.
         irq: output, the interrupt; high while irq_pending and irq_enable are set.
         vga: `Vga`; output. Data changes at the falling edge of vga.clk.
-        config: the design.
         s_axi: `Axi4LitePort`, this block as the subordinate; its addresses count bytes.
         wb: `WishbonePort`, this block as the slave; its addresses count 32-bit words.
         s_apb: `ApbPort`, this block as the completer; its addresses count bytes.

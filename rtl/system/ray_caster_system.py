@@ -24,7 +24,6 @@ def ray_caster_system(clk, ready, buttons, uart_tx, vga, config: Configuration, 
             memory_map.BUTTON_NAMES. They may change at any time.
         uart_tx: output of the serial port: 8 data bits, no parity, a stop bit, at `memory_map.BAUD_RATE`.
         vga: `Vga`; output, as in ray_caster_module.
-        config: the design.
         program: the file with the program, as in word_memory.
     """
     reset = ResetSignal(0, active=1, isasync=False)

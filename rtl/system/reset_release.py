@@ -17,7 +17,6 @@ def reset_release(clk, ready, reset):
     The registers here have no reset: chips power up with them at 0, and simulators need a low ready for three cycles.
 
     Args:
-        clk: the clock.
         ready: flag; the clock is stable. It may change at any time.
         reset: output, active high; high again three cycles after ready has fallen.
     """

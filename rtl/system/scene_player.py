@@ -35,14 +35,11 @@ def scene_player(clk, reset, buttons, irq, avm_m0, config: Configuration, scene:
     A camera written at one StartScreen is shown from the next on.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         buttons: unsigned, 6 bits, active high; from bit 0 on: forward, back, left, right, up, down, as in BUTTONS. They
             may change at any time, and count if they are held at StartScreen.
         irq: level; the StartScreen interrupt.
         avm_m0: `AvalonPort`, this block as the host: drives address, write, writedata and byteenable, reads
             waitrequest.
-        config: the design.
         scene: the scene.
     """
     program, first_of_frame = player_program(scene, config)

@@ -25,7 +25,6 @@ def scene_system(clk, ready, buttons, vga, config: Configuration, scene: Scene):
         buttons: unsigned, 6 bits, active high; from bit 0 on: forward, back, left, right, up, down, as in
             scene_player.BUTTONS. They may change at any time.
         vga: `Vga`; output, as in ray_caster_module.
-        config: the design.
         scene: the scene.
     """
     reset = ResetSignal(0, active=1, isasync=False)

@@ -15,14 +15,12 @@ def line_buffer(clk, write, line_buf_sel, write_offset, pixel_in, read_offset, p
     As the halves differ, no address is read while it is written.
 
     Args:
-        clk: the clock.
         write: strobe; stores pixel_in.
         line_buf_sel: flag; the half to write. The other half is read.
         write_offset: unsigned, below `config.groups`; number of the unit's pixel to write, read with write.
         pixel_in: unsigned, `pixel_bits` bits; read with write.
         read_offset: unsigned, below `config.groups`; number of the unit's pixel to read.
         pixel_out: unsigned, `pixel_bits` bits; output, a cycle after read_offset.
-        config: the design.
     """
     groups = config.groups
     address_width = bits_for(2 * groups)

@@ -13,7 +13,6 @@ def pixel_clock(clk, vga_clk):
     the second: on an ECP5 ODDRX1F with D0 = 0, D1 = 1, in Intel's chips ALTDDIO_OUT with datain_h = 0, datain_l = 1.
 
     Args:
-        clk: the clock.
         vga_clk: output, clk inverted.
     """
 

@@ -19,7 +19,6 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0,
     consist of front porch, sync, back porch and picture. VS changes together with HS.
 
     Args:
-        clk: the clock.
         reset: synchronous, active high; restarts at the first pixel of the first line of the vertical front porch.
         scan: `Scan`; output. start_screen: strobe one row of rays (`screen.doubling` lines) before the first visible
             line, in time to render row 0. start_row: strobe at the beginning of the first line of each row, when that

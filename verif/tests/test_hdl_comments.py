@@ -10,18 +10,18 @@ from pathlib import Path
 
 import pytest
 from hdl_blocks import converted
-from myhdl import always, always_comb, block
+from myhdl import always_comb, always_seq, block
 
 from raycaster import rtl
 from raycaster.convert.vocabulary import VOCABULARY
 from raycaster.design.decide import configure
-from raycaster.hdl.signals import bit
+from raycaster.hdl.signals import bit, reset_signal
 from raycaster.rtl.common.interfaces import Place
 from raycaster.rtl.common.records import Signs
 
 
 @block
-def with_documented_ports(clk, value, slope, pair, cycles: int, config=None):
+def with_documented_ports(clk, reset, value, slope, pair, cycles: int, config=None):
     """Do nothing, `config.units` times in `SETUP_LATENCY` cycles.
 
     Without config.turn it is `slope.dx` that is not read, whatever config.rounding says.
@@ -33,11 +33,10 @@ def with_documented_ports(clk, value, slope, pair, cycles: int, config=None):
         slope: `Signs`. None where there is no ray. Read `cycles` cycles later.
         pair: `Place`; output.
         cycles: no port.
-        config: the design.
     """
 
     # With config.materials a row has `config.screen_geometry.doubling` lines.
-    @always(clk.posedge)
+    @always_seq(clk.posedge, reset=reset)
     def copy():
         pair.row.next = value + slope.dz
 
@@ -52,7 +51,7 @@ def test_ports_and_processes_have_their_comments(tmp_path):
     """Each argument's text stands above its first port; numbers, options and Verilog names replace Python expressions.
     A process needs no comment."""
     config = configure(units=32)
-    top = with_documented_ports(bit(), bit(), Signs(), Place(config), 3, config)
+    top = with_documented_ports(bit(), reset_signal(), bit(), Signs(), Place(config), 3, config)
     modules = converted(top, tmp_path, vocabulary=VOCABULARY)
     head, _, body = modules["with_documented_ports"].path.read_text().partition(");\n\n")
     assert (
@@ -63,6 +62,8 @@ def test_ports_and_processes_have_their_comments(tmp_path):
 module with_documented_ports (
     // the clock, 50 MHz.
     input  wire       clk,
+    // synchronous, active high.
+    input  wire       reset,
     // flag; read for 5 units with slope_dy, or not at all.
     input  wire       value,
     // Signs. Read 3 cycles later.
@@ -96,7 +97,7 @@ def converted_texts(directory: Path) -> list[str]:
     import test_hdl_programs as programs  # noqa: PLC0415 - its table would be a second one of this file's tests
 
     config = configure(units=32)
-    top = with_documented_ports(bit(), bit(), Signs(), Place(config), 3, config)
+    top = with_documented_ports(bit(), reset_signal(), bit(), Signs(), Place(config), 3, config)
     texts = [converted(top, directory, vocabulary=VOCABULARY)["with_documented_ports"].path.read_text()]
     for block_, makers, *_ in (one.values for one in programs.PROGRAMS if "functions" in one.id or "loops" in one.id):
         made = block_(**{name: programs.argument(maker) for name, maker in makers.items()})
@@ -108,9 +109,11 @@ def converted_texts(directory: Path) -> list[str]:
     "path", [path for path in Path(rtl.__file__).parent.glob("*/*.py")], ids=lambda path: path.stem
 )
 def test_each_port_of_the_hardware_is_documented(path):
-    """The docstring of each block lists its arguments in order."""
+    """The docstring of each block lists its arguments in order, but may leave out the clock, a reset and the design."""
     for node in ast.parse(path.read_text()).body:
         if isinstance(node, ast.FunctionDef) and any(ast.unparse(one) == "block" for one in node.decorator_list):
             _, _, listed = (ast.get_docstring(node) or "").partition("Args:\n")
+            texts = re.findall(r"^    (\w+): ", listed, re.M)
             given = [argument.arg for argument in [*node.args.args, *node.args.kwonlyargs]]
-            assert re.findall(r"^    (\w+): ", listed, re.M) == given, f"{path}:{node.lineno}"
+            unsaid = {"clk", "reset", "config"} - {*texts}
+            assert texts == [name for name in given if name not in unsaid], f"{path}:{node.lineno}"

@@ -137,15 +137,15 @@ GOOD = re.findall(r"```python\n(.*?)```", (ROOT / "docs/extend.md").read_text(),
 @pytest.mark.parametrize(
     ("right", "wrong", "fault"),
     [
-        ("if dim:", "if dimm:", "34: dimm may have no value here; assign to it first"),
+        ("if dim:", "if dimm:", "33: dimm may have no value here; assign to it first"),
         (
             "dimmed.word.next = half",
             "dimmed.wrd.next = half",
-            "35: 'Colour' object has no attribute 'wrd' (AttributeError)",
+            "34: 'Colour' object has no attribute 'wrd' (AttributeError)",
         ),
-        ("unsigned(CHANNEL_BITS)", "unsinged(CHANNEL_BITS)", "22: name 'unsinged' is not defined (NameError)"),
-        ("(red=red, ", "(", "30: Colour: red: missing, or no field (ValueError)"),
-        ("dimmed.word.next = colour", "dimmed.word.next = brighter(colour", "37: '(' was never closed"),
+        ("unsigned(CHANNEL_BITS)", "unsinged(CHANNEL_BITS)", "21: name 'unsinged' is not defined (NameError)"),
+        ("(red=red, ", "(", "29: Colour: red: missing, or no field (ValueError)"),
+        ("dimmed.word.next = colour", "dimmed.word.next = brighter(colour", "36: '(' was never closed"),
     ],
 )
 def test_a_fault_in_a_block_is_one_line(right: str, wrong: str, fault: str, tmp_path: Path, monkeypatch):
