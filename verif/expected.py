@@ -11,7 +11,6 @@ from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.engines import engine_of
-from raycaster.rtl.exact.exact_control import PATTERN_LATENCY
 
 EARLY_OUT_AT = 2
 """Cycles from the start of a rectangle that no ray runs towards to its early out, the last cycle of its test."""
@@ -137,7 +136,7 @@ def trace_cycles(
         offered = [start + offered_after for start, ended in zip(starts, early, strict=False) if not ended]
         # A pass without rectangles only searches for one and adds the background; a lost ray adds it at once.
         traced = lost is None or bounce <= lost
-        patterns = PATTERN_LATENCY if config.patterns and exact else 0
+        patterns = 6 if config.patterns and exact else 0
         length = 2 + max([starts[-1], *(end + patterns for end in offered)]) if traced else 1
         first = len(cycles)
         cycles += [TraceCycle(idle | {"steps_initial_ray": int(bounce == 0)}, bounce) for _ in range(length)]

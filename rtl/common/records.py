@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Records of the ray tracer; see `raycaster.hdl.records`."""
 
+from collections.abc import Mapping
+
 from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, Configuration
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed
@@ -32,10 +34,10 @@ class Camera(Record):
 
     The basis of a camera that turns is forward, right and up, times 256. The light has light_x, light_y, light_z, the
     eye of all shadow rays; light_on, low if everything is lit; and light_shade, the quarters of a colour that remain in
-    the dark.
+    the dark. A camera that never changes is given the fields' values.
     """
 
-    def __init__(self, config: Configuration):
+    def __init__(self, config: Configuration, fixed: Mapping[str, int] | None = None):
         basis = (f"{vector}_{axis}" for vector in ("forward", "right", "up") for axis in "xyz")
         light = {f"light_{axis}": COORDINATE_BITS for axis in "xyz"} | {"light_shade": SHADE_BITS, "light_on": 1}
         super().__init__(
@@ -43,6 +45,8 @@ class Camera(Record):
             | dict.fromkeys(basis, Signed(BASIS_BITS * config.turn))
             | {name: bits * config.light for name, bits in light.items()}
         )
+        if fixed is not None:
+            self.tie(fixed)
 
 
 class Origin(Record):

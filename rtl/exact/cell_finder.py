@@ -9,6 +9,12 @@ from raycaster.rtl.common.widths import SMALLEST_CELL_BITS
 from raycaster.rtl.engine.divider_step import divider_step
 from raycaster.rtl.exact.hit_component import hit_component
 
+DIGITS = COORDINATE_BITS - SMALLEST_CELL_BITS
+"""Quotient bits of a division."""
+
+DIVISION_CYCLES = DIGITS // 2
+"""Cycles of a division, with two bits per cycle."""
+
 
 @block
 def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, found_slope, odd_u, odd_v):
@@ -18,9 +24,9 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
     bits of the quotient decide, and a restoring division finds two of them per cycle. The dividend's bits above them
     are less than e.
 
-    The division for P[u] begins at steps.load_divider. Three cycles later, at steps.store_quotient, its bit is stored
-    and the division for P[v] begins, which takes three more cycles. All other inputs must be stable until then. Without
-    a hit the outputs are don't care. A cell as large as the world, or larger, is even.
+    The division for P[u] begins at steps.load_divider. `DIVISION_CYCLES` cycles later, at steps.store_quotient, its bit
+    is stored and the division for P[v] begins, which takes as long. All other inputs must be stable until it ends.
+    Without a hit the outputs are don't care. A cell as large as the world, or larger, is even.
 
     Args:
         steps: `Steps`; only load_divider and store_quotient are read.
@@ -31,11 +37,11 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
         found_distance: unsigned; n, the distance from the eye to the plane of found_surface.
         found_slope: unsigned; e, the magnitude of the slope on that plane's axis.
         odd_u: output flag; the lowest bit of floor(P[u] / cell). Valid from the cycle after steps.store_quotient.
-        odd_v: output flag; the lowest bit of floor(P[v] / cell). Valid in the third cycle after steps.store_quotient.
+        odd_v: output flag; the lowest bit of floor(P[v] / cell). Valid `DIVISION_CYCLES` cycles after
+            steps.store_quotient.
     """
     slope_bits, eye_bits = len(found_slope), len(eye.x)
     point_bits = slope_bits + COORDINATE_BITS
-    digit_count = COORDINATE_BITS - SMALLEST_CELL_BITS
 
     on_x, on_z = bit(), bit()
     eye_q = signed(eye_bits)
@@ -44,7 +50,7 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
     point = unsigned(point_bits)
 
     remainder, remainder_1, remainder_2 = (unsigned(slope_bits) for _ in range(3))
-    digits, digits_1, digits_2 = (unsigned(digit_count) for _ in range(3))
+    digits, digits_1, digits_2 = (unsigned(DIGITS) for _ in range(3))
     first_step = divider_step(remainder, digits, found_slope, remainder_1, digits_1)
     second_step = divider_step(remainder_1, digits_1, found_slope, remainder_2, digits_2)
 
@@ -85,7 +91,7 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
     @always_comb
     def choose_digit():
         odd_v.next = False
-        for size in range(digit_count):
+        for size in range(DIGITS):
             if found_surface.cell == size:
                 odd_v.next = digits_2[size]
 

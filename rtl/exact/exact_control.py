@@ -8,23 +8,25 @@ from raycaster.hdl.signals import bit, tied, unconnected, unsigned
 from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.common.records import Surface
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
+from raycaster.rtl.exact.cell_finder import DIVISION_CYCLES
+from raycaster.rtl.exact.rect_tester import LATENCY
 from raycaster.rtl.exact.shadow_sequencer import shadow_sequencer
 
-WRITE_AT = 2
-"""Bit of in_flight that is set three cycles after find_intersection, the latency of a unit's test."""
+WRITE_AT = LATENCY - 1
+"""Bit of in_flight that is set when a unit's test ends."""
 
-PATTERN_LATENCY = 6
-"""Cycles until the cells of a pattern are known: three each for u and v, with two bits per cycle."""
+PATTERN_LATENCY = 2 * DIVISION_CYCLES
+"""Cycles until the cells of a pattern are known, u before v."""
 
 
 @block
 def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offered, done, config: Configuration):
     """Operate all units of the exact engine in lockstep, with a ray_sequencer that starts a rectangle per clock.
 
-    steps.write_z_buf follows steps.find_intersection by three cycles, the latency of rect_tester; in a shadow pass,
-    with `config.light`, steps.write_shadow does so instead. With `config.patterns` a pass continues until the cells of
-    the nearest hit are known: steps.load_divider comes in the cycle after each steps.write_z_buf, and
-    steps.store_quotient three cycles after the last steps.load_divider.
+    steps.write_z_buf follows steps.find_intersection by `LATENCY` cycles, those of rect_tester; in a shadow pass, with
+    `config.light`, steps.write_shadow does so instead. With `config.patterns` a pass continues until the cells of the
+    nearest hit are known: steps.load_divider comes in the cycle after each steps.write_z_buf, and steps.store_quotient
+    `DIVISION_CYCLES` cycles after the last steps.load_divider.
 
     Ports that ray_sequencer also has work as described there.
 
@@ -38,7 +40,7 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
         fate: `GroupFate`; may_hit and any_alive as in ray_sequencer, any_in_question as in shadow_sequencer, and
             any_towards is not read.
         offered: output `Surface`; in the cycle of steps.write_z_buf, the surface of the rectangle whose
-            steps.find_intersection came three cycles before.
+            steps.find_intersection came `LATENCY` cycles before.
         done: output flag; all rays have been traced. High until reset_ray_caster.
     """
     in_flight = unsigned(WRITE_AT + 1 + (PATTERN_LATENCY if config.patterns else 0))
@@ -68,7 +70,7 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
         steps.write_z_buf.next = in_flight[WRITE_AT] and not from_light
 
     if config.patterns:
-        load_at, store_at = WRITE_AT + 1, WRITE_AT + 4
+        load_at, store_at = WRITE_AT + 1, WRITE_AT + 1 + DIVISION_CYCLES
 
         @always_comb
         def operate_divider():

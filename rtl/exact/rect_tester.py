@@ -8,13 +8,16 @@ from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.common.by_axis import along_a, along_u, along_v, by_axis
 from raycaster.rtl.exact.extent_tester import extent_tester
 
+LATENCY = 3
+"""Cycles from steps.find_intersection to the outputs."""
+
 
 @block
 def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, numerator, denominator):
     """Test a ray against one rectangle per clock, by cross-multiplication: no quotient, no rounding.
 
-    steps.find_intersection takes a rectangle and a ray; hit, at_mirror, numerator and denominator follow three cycles
-    later.
+    steps.find_intersection takes a rectangle and a ray; hit, at_mirror, numerator and denominator follow `LATENCY`
+    cycles later.
 
     The ray runs from the eye E with the slope D. If a component of D is negative, its axis is reversed: coordinates are
     complemented, which negates each difference of two, and the bounds change places. So D is taken as magnitudes, and
@@ -39,7 +42,7 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
         slope: `Slope`, the magnitudes; read with steps.find_intersection.
         mirror: `Mirror` that the ray left last; read with steps.find_intersection, except distance, which is read a
             cycle later.
-        hit: output flag; the ray hits the rectangle. Valid in the third cycle after steps.find_intersection.
+        hit: output flag; the ray hits the rectangle. Valid `LATENCY` cycles after steps.find_intersection.
         at_mirror: output flag; the hit is in the plane of the mirror that the ray left last. Valid with hit, don't care
             unless hit is high.
         numerator: unsigned output; n. Valid with hit, don't care unless hit is high.

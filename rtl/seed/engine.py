@@ -56,7 +56,7 @@ class Seed(LineBufferedEngine):
 
     def pass_latency(self, config: Configuration) -> int:
         """Add the stages: slope and plane latched, product, divider loaded, hit point, depth compared, ray stored."""
-        from raycaster.rtl.seed.ray_control import LOAD_AT, WRITE_AFTER
+        from raycaster.rtl.seed.intersection_helper import LOAD_AT, WRITE_AFTER
 
         return LOAD_AT + WRITE_AFTER + 2
 

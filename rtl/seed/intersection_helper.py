@@ -10,6 +10,12 @@ from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.widths import SLOPE_BITS, position_bits, product_bits
 from raycaster.rtl.seed.divider import divider
 
+LOAD_AT = 2
+"""Cycles from find_intersection to load_divider; store_quotient follows after the cycles of a division."""
+
+WRITE_AFTER = 2
+"""Cycles from store_quotient to the value, and to write_z_buf."""
+
 
 @block
 def intersection_helper(
@@ -19,7 +25,7 @@ def intersection_helper(
 
     It takes one multiplication and one division of magnitudes.
 
-    steps.find_intersection takes all operands except a. steps.load_divider follows two cycles later, and
+    steps.find_intersection takes all operands except a. steps.load_divider follows `LOAD_AT` cycles later, and
     steps.store_quotient `config.divider_steps` cycles after that. quotient, distance and valid are valid from the next
     cycle, in which a is taken; value is valid from the cycle after that. The next steps.find_intersection may follow
     `config.divider_steps` cycles after the first.

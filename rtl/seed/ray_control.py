@@ -8,12 +8,7 @@ from raycaster.hdl.signals import bit, tied, unsigned
 from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.common.records import Rect
 from raycaster.rtl.engine.ray_sequencer import ends_early, ray_sequencer
-
-LOAD_AT = 2
-"""Cycles from find_intersection to load_divider; store_quotient follows after the cycles of a division."""
-
-WRITE_AFTER = 2
-"""Cycles from store_quotient to write_z_buf."""
+from raycaster.rtl.seed.intersection_helper import LOAD_AT, WRITE_AFTER
 
 
 @block
@@ -21,9 +16,9 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
     """Operate all units of the seed engine in lockstep, with a ray_sequencer that keeps pace with the dividers.
 
     A new rectangle starts every `config.divider_steps` cycles: with steps.find_intersection in cycle t,
-    steps.load_divider comes in t + 2, steps.store_quotient in t + 2 + `config.divider_steps` (together with the next
-    rectangle's steps.load_divider) and steps.write_z_buf two cycles later. The early_out of ray_sequencer comes in t +
-    2, from the fate.any_towards of t + 1.
+    steps.load_divider comes in t + `LOAD_AT`, steps.store_quotient `config.divider_steps` cycles later (together with
+    the next rectangle's steps.load_divider) and steps.write_z_buf `WRITE_AFTER` cycles after that. The early_out of
+    ray_sequencer comes in t + 2, from the fate.any_towards of t + 1.
 
     Ports that ray_sequencer also has work as described there.
 

@@ -45,7 +45,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         usable = tied((1 << config.rectangles) - 1, unsigned(config.rectangles))
     bus = SceneBus(address_bits(*config.map), is_read=config.facts.whole_frames or not camera_fixed)
     picture = Picture(reflections=reflections, background=background)
-    camera = Camera(config).tie(fixed.camera_fields) if camera_fixed else Camera(config)
+    camera = Camera(config, fixed=fixed.camera_fields if camera_fixed else None)
     rects, progress = Rects(config, usable=usable), Progress(config)
     camera_readback, rect_readback = unsigned(WORD_BITS), unsigned(WORD_BITS)
     bad_rectangle = bit()
