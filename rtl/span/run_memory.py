@@ -5,6 +5,7 @@ from myhdl import always_comb, block, instances
 
 from raycaster.hdl.signals import bits_for, tied, unsigned
 from raycaster.rtl.span.bank_choice import bank_choice
+from raycaster.rtl.span.bank_feed import bank_feed
 from raycaster.rtl.span.run_bank import run_bank
 
 BANK_PLACES = 2048
@@ -12,12 +13,16 @@ BANK_PLACES = 2048
 parity. So a bank is a few of these blocks side by side, and nothing is between them and its register."""
 
 CHOICES = 4
-"""Banks of a `bank_choice`."""
+"""Banks of a `bank_choice` and of a `bank_feed`."""
 
 
 def read_latency(places: int, bank: int = BANK_PLACES) -> int:
-    """Return the cycles from a place to its run: two of a bank, and one for each choice among the banks."""
-    cycles, left = 2, -(-places // bank)
+    """Return the cycles from a place to its run.
+
+    They are two of a bank, one for each choice among the banks and, if there are several choices, one of a feed.
+    """
+    banks = -(-places // bank)
+    cycles, left = 2 + (banks > CHOICES), banks
     while left > 1:
         cycles, left = cycles + 1, -(-left // CHOICES)
     return cycles
@@ -28,7 +33,8 @@ def run_memory(clk, write, write_place, written, read_place, shown, places: int,
     """Keep runs in block RAM, which is unknown at power-up.
 
     A large memory is made of banks, each with a register of its own, and of a tree of registers behind them: a
-    multiplexer for all blocks at once would take most of a cycle, and the way to it the rest.
+    multiplexer for all blocks at once would take most of a cycle, and the way to it the rest. If there are more than
+    `CHOICES` banks, each so many have registers in front of them, too.
 
     Args:
         clk: the clock.
@@ -50,14 +56,61 @@ def run_memory(clk, write, write_place, written, read_place, shown, places: int,
             shown=shown.word, places=places,
         )  # fmt: skip
     else:
-        top = len(read_place)
-        reads, writes = unsigned(count), unsigned(count)
-        runs = [unsigned(width) for _ in range(count)]
+        top, counts = len(read_place), [min(CHOICES, count - start) for start in range(0, count, CHOICES)]
         sizes = [min(bank, places - number * bank) for number in range(count)]
+        runs = [unsigned(width) for _ in range(count)]
+        near_writes, near_reads = ([unsigned(few) for few in counts] for _ in range(2))
+        near_write_place, near_read_place, near_written = [write_place], [read_place], [written.word]
+        if len(counts) == 1:
+            (writes,), (reads,) = near_writes, near_reads
+
+            @always_comb
+            def choose_bank():
+                reads.next = 0
+                reads.next[read_place[top:low]] = True
+                writes.next = 0
+                if write:
+                    writes.next[write_place[top:low]] = True
+
+        else:
+            middle = low + bits_for(CHOICES)
+            lows = [bits_for(size) for size in sizes[::CHOICES]]
+            near_write_place, near_read_place = ([unsigned(one) for one in lows] for _ in range(2))
+            near_written = [unsigned(width) for _ in counts]
+            writes, reads = unsigned(len(counts)), unsigned(len(counts))
+            write_banks, read_banks = unsigned(CHOICES), unsigned(CHOICES)
+            feeds = [
+                bank_feed(
+                    clk, write=writes(i), write_banks=write_banks(few, 0), write_place=write_place(lows[i], 0),
+                    written=written.word, read=reads(i), read_banks=read_banks(few, 0),
+                    read_place=read_place(lows[i], 0),
+                    near_writes=near_writes[i], near_write_place=near_write_place[i], near_written=near_written[i],
+                    near_reads=near_reads[i], near_read_place=near_read_place[i],
+                )
+                for i, few in enumerate(counts)
+            ]  # fmt: skip
+
+            @always_comb
+            def choose_feed():
+                reads.next = 0
+                reads.next[read_place[top:middle]] = True
+                writes.next = 0
+                if write:
+                    writes.next[write_place[top:middle]] = True
+
+            @always_comb
+            def choose_bank():
+                read_banks.next = 0
+                read_banks.next[read_place[middle:low]] = True
+                write_banks.next = 0
+                write_banks.next[write_place[middle:low]] = True
+
         banks = [
             run_bank(
-                clk, write=writes(number), write_place=write_place(bits_for(size), 0), written=written.word,
-                read=reads(number), read_place=read_place(bits_for(size), 0), shown=runs[number], places=size,
+                clk, write=near_writes[number // CHOICES](number % CHOICES),
+                write_place=near_write_place[number // CHOICES](bits_for(size), 0),
+                written=near_written[number // CHOICES], read=near_reads[number // CHOICES](number % CHOICES),
+                read_place=near_read_place[number // CHOICES](bits_for(size), 0), shown=runs[number], places=size,
             )
             for number, size in enumerate(sizes)
         ]  # fmt: skip
@@ -70,13 +123,5 @@ def run_memory(clk, write, write_place, written, read_place, shown, places: int,
                 runs.append(unsigned(width) if end - first > CHOICES else shown.word)
                 choices.append(bank_choice(clk, run_0=run_0, run_1=run_1, run_2=run_2, run_3=run_3, run=runs[-1]))
             first = end
-
-        @always_comb
-        def choose_bank():
-            reads.next = 0
-            reads.next[read_place[top:low]] = True
-            writes.next = 0
-            if write:
-                writes.next[write_place[top:low]] = True
 
     return instances()

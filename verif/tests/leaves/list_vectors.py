@@ -20,8 +20,9 @@ BANK = 2048
 
 
 def memory_cycles(places: int, bank: int = BANK) -> int:
-    """Return the cycles from a place of a memory to its run: two, and one more for each fourfold of banks."""
-    return 2 + next(stages for stages in range(9) if bank * 4**stages >= places)
+    """Return the cycles from a place of a memory to its run: two, one for each fourfold of banks, one for feeds."""
+    stages = next(stages for stages in range(9) if bank * 4**stages >= places)
+    return 2 + stages + (stages > 1)
 
 
 def slots_of(latency: int) -> int:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf test of `run_memory`, `run_bank` and `bank_choice`: places are written and read in any order, or in turn."""
+"""Leaf test of `run_memory` and its stages and banks: places are written and read in any order, or in turn."""
 
 from list_vectors import PIXEL_BITS, entry, memory_cycles
 from vectors import by
