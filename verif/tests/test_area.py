@@ -132,6 +132,7 @@ def test_a_missed_clock_is_routed_again(reached, code, kept, runs, tmp_path, mon
     assert made[-1][1] == (flows.LONGEST, flows.LEAST_AGAIN)[runs - 1]
 
 
+@pytest.mark.slow
 def test_the_command(tmp_path):
     """Each unit has two multipliers; the share of a board's chip is printed."""
     options = ("--screen", "tiny", "--units", "2", "--rectangles", "1", "--reflections", "0", "--divider-bits", "1")

@@ -158,7 +158,7 @@ def test_the_main_program_matches_cocotb(tmp_path: Path):
     assert len(ours) == len(theirs) > 10 * configuration.screen_geometry.vertical.total
 
 
-@pytest.mark.slow_sets(quick=["axi4lite-icarus-seed", "wishbone-icarus-exact"])
+@pytest.mark.slow_sets(quick=["axi4lite-icarus-exact", "wishbone-icarus-exact"])
 @pytest.mark.parametrize(
     ("simulator", "engine"),
     [one for one in product(SIMULATORS, TINY) if one != ("icarus", "span")],
@@ -274,7 +274,7 @@ def test_icarus_takes_clocks_that_rest(bench: Bench):
     bench(TRAFFIC_BENCH, SMALL[OWN], "icarus", seeds=(1,), defines=GATED)
 
 
-@pytest.mark.slow_sets(quick=["avalon-1", "axi4lite-1", "span-1", "exact-1"])
+@pytest.mark.slow_sets(quick=["avalon-1", "span-1", "exact-1"])
 @pytest.mark.parametrize(
     ("design", "start"), [(name, start) for name in STARTED for start in ((1, 2) if name in BRIDGED else (1, 2, 3, 4))]
 )
@@ -283,6 +283,7 @@ def test_random_start(bench: Bench, design, start):
     bench("sim.frame_bench", STARTED[design], "verilator", SMALL_SCENE, plusargs=random_values(start))
 
 
+@pytest.mark.slow
 def test_the_start_is_random(noticed: Noticed):
     """Without its reset, a counter starts at a different random value each time."""
     fault = "avalon_interface", "frame <= 0;", "frame <= frame;"

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from conftest import BUILD, SMALL_SCENE, TINY
 
 from raycaster.sim.simulator import build_model
 from raycaster.verif.coverage import FLAGS, Run
 
 
+@pytest.mark.slow
 def test_holes_are_found(tmp_path: Path):
     """A single frame is soon drawn, and reaches most of the design."""
     model = build_model(TINY["span"], build=BUILD, flags=FLAGS)

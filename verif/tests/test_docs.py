@@ -131,6 +131,7 @@ def test_figures_are_kept(tmp_path: Path, monkeypatch):
     assert kept.tools["myhdl"] == importlib.metadata.version("myhdl")
 
 
+@pytest.mark.slow
 def test_only_other_verilog_makes_a_figure_stale(monkeypatch, capsys):
     """Comments in the Verilog do not count; a module of the exact engine is not in the span engine's Verilog."""
     command = "raycaster verify soak --screen tiny --rectangles 1 --reflections 0 --engine "

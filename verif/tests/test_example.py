@@ -47,6 +47,7 @@ def simulated(directory: Path, design: str, ports: str, files: list[Path], *opti
     return np.array([int(line, 16) for line in run_tool(directory, "vvp", "-n", "bench").stdout.split()])
 
 
+@pytest.mark.slow_sets("amaranth")
 @pytest.mark.parametrize(
     ("name", "bus", "reset", "vga"),
     [
@@ -105,7 +106,7 @@ def test_fifo(fault, tmp_path):
     assert (tmp_path / "build" / "fifo" / "fifo.fst").is_file()
 
 
-@pytest.mark.slow_sets("fault", "verilator")
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("simulator", "fault", "waves"),
     [

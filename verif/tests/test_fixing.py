@@ -238,7 +238,7 @@ def test_no_pixel_changes(bench: Bench, tmp_path, engine, name, scope, options):
     assert result["worst_group_cycles"] <= engine_of(design.configuration).group_cycles(design.configuration)
 
 
-@pytest.mark.slow_sets("exact", "seed")
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ENGINES)
 def test_any_camera_may_look_at_fixed_rectangles(bench: Bench, tmp_path, engine):
     """The scene has coplanar rectangles and some at x = 0 that `rects` leaves out; a camera may be in any corner."""
@@ -302,6 +302,7 @@ def test_the_least_fraction_that_meets_an_error():
     assert {one.configuration.engine for one in search.candidates(BOXES, {"engine": "span"}, (), None)} == {"span"}
 
 
+@pytest.mark.slow
 def test_units_and_lists_that_a_scene_takes():
     """The fewest units that draw a frame in time, by the model; more runs than a list holds are known beforehand."""
     options = {"engine": "span", "rows": 240, "scale": 1}

@@ -27,7 +27,8 @@ FAULTY = [proof for proof in PROPERTIES if proof.faults]
 
 
 @pytest.mark.slow_sets(
-    "avalon-agent", "finder-quotients", "fixed-rects", "span-sweep",
+    quick=["apb", "axi4lite", "host-transfers", "line-sections", "played-lines", "run-order", "tester-exact-1 bits",
+           "video-timing-toy", "whole-frames", "wishbone"]
 )  # fmt: skip
 @pytest.mark.parametrize("proof", [proof for proof in FAULTY if proof.small], ids=str)
 def test_a_property_holds(proof, output):

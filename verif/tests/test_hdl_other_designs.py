@@ -121,6 +121,7 @@ def loaded(path: Path) -> dict:
     return names
 
 
+@pytest.mark.slow_sets(quick=["cookbook/bitonic", "cookbook/stopwatch/bcd2led", "manual", "rs232", "uart_tx"])
 @pytest.mark.parametrize("file", DESIGNS)
 def test_an_example_converts_as_myhdl_does(file, examples, tmp_path, random, monkeypatch):
     monkeypatch.chdir(tmp_path)  # some examples convert themselves when they are imported

@@ -126,6 +126,7 @@ def synthesise_small(text: str, directory: Path) -> Netlist:
     return synthesise([source], directory / "netlist", top="small")
 
 
+@pytest.mark.slow
 def test_synthesised_once(tmp_path):
     """Unchanged files are found, changed ones are not, and the same files give the same bytes elsewhere."""
     first = synthesise_small(SMALL, tmp_path)

@@ -68,13 +68,13 @@ PYTHON = re.compile(r"`|\b(?:None|True|False|config|self)\b|\b[a-z_]\w*\.[a-z_]"
 
 
 @pytest.mark.slow_sets(
-    "span-vga",
-    "exact-tiny48-u2-r1",
-    "exact-tiny48-u2-r2-m1-c8-wishbone",
-    "exact-tiny48-u4",
-    "exact-tiny48-u8",
-    "exact-vga",
-    "seed",
+    quick=[
+        "exact-tiny48-u16-r2-m2-c8-turn-materials-patterns-light",
+        "exact-tiny48-u2-r2-m1-c8-axi4lite",
+        "exact-tiny48-u2-r2-m1-c8-uart",
+        "span-tiny48-s2-u1-r2-m1-pairs",
+        "span-tiny48-s2-u1-r2-m2",
+    ]
 )
 @configurations
 def test_tools_have_nothing_to_say(config: Configuration, tmp_path):
@@ -200,6 +200,7 @@ BENCH_FAULTS = [
     "fixed",
     "pairs",
     "apb",
+    "uart",
     "wishbone",
     "fault-0 lines",
     "fault-address 0: n-axi",
@@ -243,7 +244,7 @@ def fusesoc(folder: Path, *target: str) -> subprocess.CompletedProcess[str]:
     return run_tool(folder, *command, HOME=str(folder), XDG_DATA_HOME=str(folder), XDG_CONFIG_HOME=str(folder))
 
 
-@pytest.mark.slow_sets("verilator", "icarus-apb", "icarus-axi4lite", "icarus-wishbone")
+@pytest.mark.slow_sets(quick=["icarus-avalon"])
 @pytest.mark.parametrize(
     ("tool", "bus"), [("icarus", "avalon"), ("verilator", "avalon"), *(("icarus", bus) for bus in BRIDGED)]
 )

@@ -88,10 +88,7 @@ DESIGNS = [
         *(("span", (more,)) for more in ("rects-shared", "turn-materials-patterns-light-pairs-all")),
     ]
 ]
-QUICK = [
-    "seed]", "exact]", "exact-light]", "exact-across]", "span-turn]", "span-materials-patterns-light-corner]",
-    "span-turn-materials-patterns-light-pairs-all]",
-]  # fmt: skip
+QUICK = ["seed]", "exact-light]", "span-turn-materials-patterns-light-pairs-all]"]
 """Designs of `make test`."""
 
 
@@ -325,11 +322,7 @@ FAULTS = {
         "seed-divider",
         "seed-ray_mem",
         "seed-video_generator",
-        "span-first_change",
         "span-fold",
-        "span-row_place",
-        "span-sweep",
-        "span-materials-patterns-light-corner-cell_walker",
     ]
 )
 @pytest.mark.parametrize(

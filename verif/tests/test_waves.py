@@ -92,6 +92,7 @@ def test_the_viewer_that_is_there_is_opened(tmp_path, monkeypatch):
     assert viewer(waves, files) is None
 
 
+@pytest.mark.slow
 def test_a_machine_without_headers_gets_vcd(tmp_path, monkeypatch):
     """Without the headers that Verilator's FST writer needs, `make trace` traces a recording in VCD."""
     for header in FST_HEADERS:

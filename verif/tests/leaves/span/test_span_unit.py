@@ -222,7 +222,7 @@ FAULTS = [
 """A module, and a text of its Verilog with a wrong one."""
 
 
-@pytest.mark.slow_sets(quick=("clipper-border", "fold-towards", "sweep-follows"))
+@pytest.mark.slow
 @pytest.mark.parametrize(("module", "right", "wrong"), FAULTS, ids=lambda text: text.split(" = ")[0])
 def test_a_planted_fault_is_noticed(module, right, wrong, leaf_of, random):
     config = DESIGNS[-1]
