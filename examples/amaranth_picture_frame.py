@@ -100,7 +100,7 @@ class PictureFrame(Component):
     def __init__(self, scene: Scene, config: Configuration):
         super().__init__({"vga": Out(vga(config))})
         self.config = config
-        self.words = scene_words(scene, config, min(scene.reflections, config.reflections))
+        self.words = scene_words(scene, config, min(scene.reflections, config.most_reflections))
 
     def elaborate(self, platform: object) -> Module:
         """Connect the writer and the ray tracer."""

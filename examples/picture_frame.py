@@ -68,7 +68,7 @@ def scene_writer(clk, reset, avm_m0, words):
 @block
 def picture_frame(clk, reset, vga, scene: Scene, config: Configuration):
     """Show one scene forever. vga is the port of ray_caster_module."""
-    words = tuple(scene_words(scene, config, min(scene.reflections, config.reflections)))
+    words = tuple(scene_words(scene, config, min(scene.reflections, config.most_reflections)))
     bus = AvalonPort(address_bits(config.table))
     bus.read, bus.byteenable = tied(0, bus.read), tied(0b1111, bus.byteenable)
     bus.readdata, bus.readdatavalid = unconnected(bus.readdata), unconnected(bus.readdatavalid)

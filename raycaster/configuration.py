@@ -220,9 +220,14 @@ class Configuration(Options):
         return self.table, self.facts.whole_frames
 
     @property
+    def most_reflections(self) -> int:
+        """Most reflections per ray; a scene may ask for fewer."""
+        return self.reflections
+
+    @property
     def passes(self) -> tuple[int, ...]:
         """Masks of the rectangles that are tested, for the primary ray and each reflection."""
-        return self.fixed.passes if self.fixed else (self.reflections + 1) * ((1 << self.rectangles) - 1,)
+        return self.fixed.passes if self.fixed else (self.most_reflections + 1) * ((1 << self.rectangles) - 1,)
 
     @property
     def shadows(self) -> tuple[int, ...]:
@@ -285,7 +290,7 @@ class Configuration(Options):
         features = "".join(f"-{name}" for name in self.features)
         bus = "" if self.bus == OWN else f"-{self.bus}" if self.baud == USUAL_BAUD else f"-{self.bus}{self.baud}"
         return (
-            f"{self.engine}-{self.screen}{self.rows}{scale}-u{self.units}-r{self.rectangles}-m{self.reflections}"
+            f"{self.engine}-{self.screen}{self.rows}{scale}-u{self.units}-r{self.rectangles}-m{self.most_reflections}"
             f"{quotients}{entries}-c{self.colour_bits}{culling}{features}{bus}{fixed}"
         )
 

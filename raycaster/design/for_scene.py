@@ -113,5 +113,5 @@ def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, An
         raise UserError(f"{path}: the scene needs {FEATURES[lacking[0]]}; leave out {as_typed(lacking[0])}")
     load_scene(path, configuration.rectangles)  # refuses more rectangles than the hardware holds
     # Use the hardware's number if it was given; a default design may compute more than the scene needs.
-    reflections = configuration.reflections if "reflections" in options else scene.reflections
+    reflections = configuration.most_reflections if "reflections" in options else scene.reflections
     return Design(path, scene, configuration, reflections)

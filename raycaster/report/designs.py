@@ -299,7 +299,7 @@ def design_chapter(designs: Sequence[Design], shares: Shares) -> Chapter:
     drawn = [Plot(f"work_{cost}", caption, work_precision(designs, cost), data) for cost, caption in captions.items()]
     wrong = sum(one.timing["wrong"] for one in designs)
     scene = load_scene(WORST_SCENE)
-    off = sum(one.frame_cycles != cycles_a_frame(one.config, scene, one.config.reflections) for one in designs)
+    off = sum(one.frame_cycles != cycles_a_frame(one.config, scene, one.config.most_reflections) for one in designs)
     beaten = [
         any(other.cells <= one.cells and other.required_ms <= one.required_ms for other in exact) for one in rounded
     ]

@@ -66,7 +66,7 @@ def find_pictures(what: Extent, scenes: Sequence[str], sweep: Sweep) -> Pictures
         for reflections in ((REFLECTIONS, DEEPEST) if f == what.fractions[0] else (REFLECTIONS,))
     ]  # fmt: skip
     # Group the pictures of a scene, because they share the exact one, which is cached.
-    points.sort(key=lambda point: (point.what, point.config.reflections))
+    points.sort(key=lambda point: (point.what, point.config.most_reflections))
     return Pictures(what, worlds, shown, sweep("pictures", points))
 
 
@@ -76,7 +76,7 @@ def error_chapter(pictures: Pictures) -> Chapter:
         "scene", "F", "rounding", "reflections", "pixels", "wrong", "wrong share", "coordinates over bound", "command",
     )  # fmt: skip
     rows = [
-        [name_of(one.what), one.config.fraction_bits, one.config.rounding, one.config.reflections,
+        [name_of(one.what), one.config.fraction_bits, one.config.rounding, one.config.most_reflections,
          *(of[name] for name in ("pixels", "wrong", "wrong_share")),
          sum(depth["exceeded"] for depth in of["depths"]), one.command]
         for one, of in pictures.results.items()

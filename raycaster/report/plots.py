@@ -138,7 +138,7 @@ def wrong_by_scene(points: Sequence[Point]) -> Figure:
     shown = []
     for point in points:
         models = SeedModel(point.config.fraction_bits, point.config.rounding), ExactModel()
-        drawn, right = (one.render(point.scene, SCREENS["vga", 240], point.config.reflections) for one in models)
+        drawn, right = (one.render(point.scene, SCREENS["vga", 240], point.config.most_reflections) for one in models)
         share = count_wrong(drawn, right) / right[..., 0].size
         name = fill(name_of(point.what).replace("_", " "), 20)  # no wider than the picture
         shown.append((f"{name}: {share:.2%}", diff_picture(drawn, right)))

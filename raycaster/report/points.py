@@ -181,9 +181,9 @@ def _picture(point: Point) -> dict[str, Any]:
     """
     config, scene = point.config, point.scene
     # Frozen models are hashable, but pydantic's types do not show it.
-    slopes, perfect = exact_trace(scene, config.screen, config.reflections)  # pyright: ignore[reportArgumentType]
+    slopes, perfect = exact_trace(scene, config.screen, config.most_reflections)  # pyright: ignore[reportArgumentType]
     rays = slopes.reshape(-1, 3)
-    rounded = _traced(SeedModel(config.fraction_bits, config.rounding), scene, rays, config.reflections)
+    rounded = _traced(SeedModel(config.fraction_bits, config.rounding), scene, rays, config.most_reflections)
     wrong = wrong_pixels(rounded.colours, perfect.colours)
     depths = depth_errors(
         Rectangles.of_scene(scene), rays, perfect, rounded.winners, rounded.points, config.fraction_bits,
@@ -274,7 +274,7 @@ def _time(point: Point) -> dict[str, Any]:
     with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
         file = Path(scratch) / "scene.toml"
         file.write_text(scene)
-        job = Job(point.config, scene=str(file), output=scratch, reflections=point.config.reflections)
+        job = Job(point.config, scene=str(file), output=scratch, reflections=point.config.most_reflections)
         for _ in range(point.runs):
             run_bench(model, "raycaster.sim.frame_bench", job, Path(scratch))
             results.append(json.loads((Path(scratch) / "result.json").read_text()))

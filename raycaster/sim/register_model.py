@@ -314,7 +314,7 @@ class Agent:
             "avs_s0_readdata": data,
             "irq": int(self.irq_enable and self.irq_pending),
             "picture_run": control["run"],
-            "picture_reflections": min(control["reflections"], self.config.reflections),
+            "picture_reflections": min(control["reflections"], self.config.most_reflections),
             "picture_background": self.background.live,
         }
 
@@ -408,7 +408,7 @@ def read_live(config: Configuration, control: Word, background: Word, camera: Ca
     colours = registers["background"].unpack(background.live)
     return LiveScene(
         run=bool(controls["run"]),
-        reflections=min(controls["reflections"], config.reflections),
+        reflections=min(controls["reflections"], config.most_reflections),
         background=tuple(colours[colour] for colour in COLOURS),
         camera=camera.position,
         basis=camera.basis,

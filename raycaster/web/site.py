@@ -161,7 +161,7 @@ def _settings(models: Sequence[Model], *, test: bool) -> dict[str, Any]:
             "models": [
                 {
                     "name": model.name, "features": list(model.configuration.features),
-                    "reflections": model.configuration.reflections,
+                    "reflections": model.configuration.most_reflections,
                     "rectangles": model.configuration.rectangles,
                 }
                 for model in models if model.draws

@@ -57,8 +57,8 @@ class LineBufferedEngine(Engine):
             return
         raise ValueError(
             f"row budget: a group of {config.units} columns takes {self.group_cycles(config)} cycles with "
-            f"{config.rectangles} rectangles, {config.reflections} reflections and {self.rect_cycles(config)} cycles "
-            f"per rectangle, but a row leaves it {config.group_budget} (less than {config.screen_geometry.row_cycles} "
-            f"cycles over {config.groups} groups); take more units or divider bits, fewer rectangles, reflections or "
-            f"fraction bits, or {as_typed('allow_underrun', True)}"
+            f"{config.rectangles} rectangles, {config.most_reflections} reflections and {self.rect_cycles(config)} "
+            f"cycles per rectangle, but a row leaves it {config.group_budget} (less than "
+            f"{config.screen_geometry.row_cycles} cycles over {config.groups} groups); take more units or divider "
+            f"bits, fewer rectangles, reflections or fraction bits, or {as_typed('allow_underrun', True)}"
         )

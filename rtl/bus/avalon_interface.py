@@ -19,7 +19,7 @@ def engine_word(config: Configuration) -> int:
         fraction_bits=config.fraction_bits,
         nearest=int(config.rounding == "nearest"),
         divider_bits=config.divider_bits,
-        reflections=config.reflections,
+        reflections=config.most_reflections,
         scale=config.scale,
         colour_bits=config.colour_bits,
         fixed=FIXED_CODES[config.fixed.scope] if config.fixed else 0,
@@ -82,7 +82,7 @@ def avalon_interface(
     run_bit, commit_bit = control.fields["run"].lsb, control.fields["commit"].lsb
     reflections_low = control.fields["reflections"].lsb
     reflections_high = reflections_low + control.fields["reflections"].width
-    most_reflections = config.reflections
+    most_reflections = config.most_reflections
     busy_bit, underrun_bit, bad_bit = (status.fields[name].lsb for name in ("busy", "underrun", "bad_rectangle"))
     frame_low = status.fields["frame"].lsb
     frame_bits = status.fields["frame"].width

@@ -139,7 +139,7 @@ class Mirror(Record):
     """
 
     def __init__(self, config: Configuration, distance_bits: int | None = None):
-        met = dict.fromkeys(("met_x", "met_y", "met_z"), int(config.reflections > 1))
+        met = dict.fromkeys(("met_x", "met_y", "met_z"), int(config.most_reflections > 1))
         super().__init__({"active": 1, "axis": AXIS_BITS, "distance": distance_bits or eye_bits(config) - 1} | met)
 
 

@@ -91,7 +91,7 @@ def eye_bits(config: Configuration) -> int:
     E' = 2k - E: r mirrors take the camera's 0..511 to -511 r .. 511 (r + 1), which is at most 511 (r + 1) from any
     coordinate of the world.
     """
-    return ((WORLD_SIZE - 1) * (config.reflections + 1)).bit_length() + 1
+    return ((WORLD_SIZE - 1) * (config.most_reflections + 1)).bit_length() + 1
 
 
 def walk_bits(config: Configuration) -> int:
@@ -106,7 +106,7 @@ def wide_walk_bits(config: Configuration) -> int:
 
 def share_bits(config: Configuration) -> int:
     """Width of a ray's weight in its pixel: each mirror splits it into quarters or, without materials, into halves."""
-    return (2 if config.materials else 1) * config.reflections + 1
+    return (2 if config.materials else 1) * config.most_reflections + 1
 
 
 def unit_bits(config: Configuration) -> int:
@@ -139,7 +139,7 @@ def furthest(config: Configuration) -> int:
 
     A mirrored eye is at most 511 (r + 1) from any coordinate of the world, and a pattern's last edge is at 512.
     """
-    return (WORLD_SIZE - 1) * (config.reflections + 1) + config.patterns
+    return (WORLD_SIZE - 1) * (config.most_reflections + 1) + config.patterns
 
 
 def line_factor_bits(config: Configuration) -> int:
@@ -194,12 +194,12 @@ def divisor_bits(config: Configuration) -> int:
 
 def level_bits(config: Configuration) -> int:
     """Width of the number of mirrors that a ray has met."""
-    return bits_for(config.reflections + 1)
+    return bits_for(config.most_reflections + 1)
 
 
 def weight_bits(config: Configuration) -> int:
     """Width of a ray's weight in its pixel, in units of 4 ** -reflections."""
-    return 2 * config.reflections + 1
+    return 2 * config.most_reflections + 1
 
 
 def index_bits(config: Configuration) -> int:

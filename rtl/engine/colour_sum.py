@@ -38,7 +38,7 @@ def colour_sum(clk, steps, channel, share, blended, config: Configuration):
                 if share[i]:
                     weighted.next = channel << i
 
-    elif config.reflections > 2:
+    elif config.most_reflections > 2:
 
         @always_comb
         def weigh():

@@ -48,7 +48,7 @@ def ray_sequencer(
     Args:
         reset_ray_caster: flag; synchronous reset to idle.
         enable: flag, read while idle; starts a group of rays.
-        picture: `Picture`; only reflections is read: 0 to `config.reflections`, stable while rendering.
+        picture: `Picture`; only reflections is read: 0 to `config.most_reflections`, stable while rendering.
         rects: `Rects`; index and fetch are outputs. usable must be stable from the cycle that reads enable on; rect is
             not read.
         steps: output `Steps`, except load_divider, store_quotient, write_z_buf and the signals of shadows, which the

@@ -33,7 +33,7 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
     Args:
         reset_ray_caster: flag; synchronous reset to idle.
         enable: flag, read while idle; starts a group of rays.
-        picture: `Picture`; only reflections is read: 0 to `config.reflections`, stable while rendering.
+        picture: `Picture`; only reflections is read: 0 to `config.most_reflections`, stable while rendering.
         rects: `Rects`; index and fetch are outputs. usable must be stable from the cycle that reads enable on; the
             surface of rect is read.
         steps: output `Steps`, for all units; load_divider and store_quotient are driven with `config.patterns`.

@@ -25,7 +25,7 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
     Args:
         reset_ray_caster: flag; synchronous reset to idle.
         enable: flag, read while idle; starts a group of rays.
-        picture: `Picture`; only reflections is read: 0 to `config.reflections`, stable while rendering.
+        picture: `Picture`; only reflections is read: 0 to `config.most_reflections`, stable while rendering.
         rects: `Rects`; index and fetch are outputs. usable must be stable from the cycle that reads enable on; rect is
             copied with steps.load_divider.
         steps: output `Steps`, for all units.

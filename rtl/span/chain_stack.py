@@ -20,7 +20,7 @@ def chain_stack(clk, push, level, kept, frame, config: Configuration):
         frame: output `Frame`; that of the level below, don't care at level 0. Combinational.
         config: the design, with reflections.
     """
-    width = bits_for(config.reflections)
+    width = bits_for(config.most_reflections)
     memory = [unsigned(len(kept.word)) for _ in range(1 << width)]
     above, below = unsigned(width), unsigned(width)
     lower = unsigned(level_bits(config))

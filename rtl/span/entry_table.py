@@ -26,7 +26,7 @@ def entry_table(clk, level, shadows, append, number, entry, read, place, stored,
         config: the design.
     """
     index_width = index_bits(config)
-    leveled = config.reflections > 0
+    leveled = config.most_reflections > 0
     address_bits = index_width + (level_bits(config) if leveled else 0) + config.light
     memory = [unsigned(len(entry.word)) for _ in range(1 << address_bits)]
     write_address, read_address = unsigned(address_bits), unsigned(address_bits)

@@ -39,7 +39,7 @@ def painter(
         emitted: output strobe; the span's last run has been taken.
         config: the design.
     """
-    reflections, share_width = config.reflections, weight_bits(config)
+    reflections, share_width = config.most_reflections, weight_bits(config)
     sum_bits = CHANNEL_BITS + share_width - 1  # all shares add up to 1 << (share_width - 1)
 
     state = Signal(PaintState.IDLE)

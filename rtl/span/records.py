@@ -43,7 +43,7 @@ class Chain(Record):
     """
 
     def __init__(self, config: Configuration):
-        columns, some = column_bits(config), int(config.reflections > 0)
+        columns, some = column_bits(config), int(config.most_reflections > 0)
         super().__init__(
             {"start": columns, "stop": columns}
             | dict.fromkeys(("eye_x", "eye_y", "eye_z"), Signed(eye_bits(config)))

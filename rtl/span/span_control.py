@@ -66,7 +66,7 @@ def span_control(
         passed_on: unsigned output, `weight_bits` bits; the weight of what the winner mirrors, valid with push.
         config: the design.
     """
-    columns, width, mirrors = config.screen_geometry.columns, column_bits(config), config.reflections > 0
+    columns, width, mirrors = config.screen_geometry.columns, column_bits(config), config.most_reflections > 0
     weight_width = weight_bits(config)
 
     state = Signal(SpanState.IDLE)
@@ -120,7 +120,7 @@ def span_control(
         @always_comb
         def see_first_weight():
             first_weight.next = 1
-            for i in range(1, config.reflections + 1):
+            for i in range(1, config.most_reflections + 1):
                 if picture.reflections == i:
                     first_weight.next = 1 << (2 * i)
 

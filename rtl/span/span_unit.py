@@ -50,7 +50,7 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
         done: output strobe, in the cycle after that in which the last run was taken.
         config: the design.
     """
-    width, mirrors = column_bits(config), config.reflections > 0
+    width, mirrors = column_bits(config), config.most_reflections > 0
 
     first_slope, step, answer = Vector(span_slope_bits(config)), Vector(step_bits(config)), Answer(config)
     chain, winner, heir, swept_heir, entry, tested = Chain(config), *(Entry(config) for _ in range(5))

@@ -40,7 +40,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
     fixed, camera_fixed = config.fixed, bool(config.fixed and config.fixed.camera)
     reflections, background, usable = None, None, None
     if camera_fixed:
-        reflections, background = tied(config.reflections, REFLECTION_BITS), tied(fixed.background, RGB_BITS)
+        reflections, background = tied(config.most_reflections, REFLECTION_BITS), tied(fixed.background, RGB_BITS)
     if fixed:
         usable = tied((1 << config.rectangles) - 1, unsigned(config.rectangles))
     bus = SceneBus(address_bits(*config.map), is_read=config.facts.whole_frames or not camera_fixed)

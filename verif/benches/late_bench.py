@@ -53,7 +53,7 @@ class Timeline:
             self._clock(cycle + 1, run=pending is not None, frame=pending)
         if takes and pending is not None:
             config = harness.configuration
-            self._whole = cycle + cycles_of(scene_rows(pending, config, config.reflections), config)
+            self._whole = cycle + cycles_of(scene_rows(pending, config, config.most_reflections), config)
         return takes
 
     def is_quiet(self, cycle: int) -> bool:
@@ -71,14 +71,14 @@ class Timeline:
 def fits(harness: Harness) -> bool:
     """Return True if a list holds the job's scene."""
     config = harness.configuration
-    return runs_of(scene_rows(harness.scene, config, config.reflections)) <= config.list
+    return runs_of(scene_rows(harness.scene, config, config.most_reflections)) <= config.list
 
 
 @cocotb.test()
 async def late_frames(bench: HierarchyObject) -> None:
     """Move the camera of a scene that fits a list whenever a commit went live; compare every picture and counter."""
     harness = Harness(bench)
-    bus, config, reflections = harness.bus, harness.configuration, harness.configuration.reflections
+    bus, config, reflections = harness.bus, harness.configuration, harness.configuration.most_reflections
     if not fits(harness):
         return
     scene, pending, writes = harness.scene, None, True
@@ -126,7 +126,7 @@ async def late_frames(bench: HierarchyObject) -> None:
 async def full_list(bench: HierarchyObject) -> None:
     """Commit a scene that does not fit a list: it leaves the picture as it was."""
     harness = Harness(bench)
-    bus, reflections = harness.bus, harness.configuration.reflections
+    bus, reflections = harness.bus, harness.configuration.most_reflections
     heavy = harness.scene
     if fits(harness):
         return

@@ -52,7 +52,7 @@ async def disabled_rectangles_cost_nothing(bench: HierarchyObject) -> None:
     bus, configuration, scene = harness.bus, harness.configuration, harness.scene
     kept = range(1, len(scene.rect), 3)
     few = scene.model_copy(update={"rect": tuple(scene.rect[index] for index in kept)})
-    reflections = configuration.reflections
+    reflections = configuration.most_reflections
 
     await harness.reset()
     await harness.load(scene, reflections)
@@ -87,7 +87,7 @@ async def frame_cycles(harness: Harness, scene: Scene) -> int:
     if not config.facts.whole_frames:
         return 0
     seen = (await harness.bus.read("frames.cycles"))["cycles"]
-    expected = scene_cycles(scene, config, config.reflections)
+    expected = scene_cycles(scene, config, config.most_reflections)
     assert seen == expected, f"a frame took {seen} cycles, expected {expected}"
     return seen
 
@@ -129,7 +129,7 @@ async def run_and_reflections(bench: HierarchyObject) -> None:
     harness.expect_picture(await harness.monitor.frame(), black, "nothing committed")
     for asked in range(4):
         await harness.commit(reflections=asked)
-        await harness.expect(scene, min(asked, harness.configuration.reflections), f"{asked} reflections")
+        await harness.expect(scene, min(asked, harness.configuration.most_reflections), f"{asked} reflections")
         if asked < 2:
             await harness.commit(run=0, reflections=asked)
             harness.expect_picture(await harness.monitor.frame(), black, "run = 0")

@@ -92,8 +92,9 @@ class Traffic:
             kind = rng.choice(("silence", "reads", "mixture", "gaps", "shadow", "scene"))
             if kind == "scene":
                 scene = random_scene(
-                    rng.randrange(1 << 16), configuration.rectangles, configuration.reflections, configuration.features
-                )
+                    rng.randrange(1 << 16), configuration.rectangles, configuration.most_reflections,
+                    configuration.features,
+                )  # fmt: skip
                 for name, fields in scene_fields(scene, configuration):
                     yield Request(registers[name].address, registers[name].pack(**fields))
                     if rng.random() < 0.2:

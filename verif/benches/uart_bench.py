@@ -45,7 +45,7 @@ class Hosts:
         """Return a new room's frame and its picture, which differs from the one that is shown."""
         config = self.harness.configuration
         while True:
-            scene = random_scene(self.random.randrange(1 << 16), config.rectangles, config.reflections)
+            scene = random_scene(self.random.randrange(1 << 16), config.rectangles, config.most_reflections)
             picture = self.harness.golden(scene, scene.reflections)
             if count_wrong(picture, self.shown) > picture[..., 0].size // 8:
                 return bytes([LEAD]) + framed(writes(scene_words(scene, config))), picture

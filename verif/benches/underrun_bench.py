@@ -38,7 +38,7 @@ async def underrun(bench: HierarchyObject) -> None:
     """Show a light scene, one that is too heavy, and the light one again. The monitor checks the sync of each frame."""
     harness = Harness(bench)
     bus, monitor, configuration = harness.bus, harness.monitor, harness.configuration
-    reflections = configuration.reflections
+    reflections = configuration.most_reflections
     heavy = _heavy(configuration.rectangles, configuration.light)
     light_picture, heavy_picture = harness.golden(_LIGHT, reflections), harness.golden(heavy, reflections)
 

@@ -31,11 +31,13 @@ async def soak(bench: HierarchyObject) -> None:
     with (output / "results.jsonl").open("w") as results:
         for seed in job.seeds:
             if job.stiff:
-                scene = cases[seed].scene.model_copy(update={"reflections": configuration.reflections})
+                scene = cases[seed].scene.model_copy(update={"reflections": configuration.most_reflections})
             elif job.scene:
                 scene = load_scene(job.scene.split(os.pathsep)[seed], configuration.capacity)
             else:
-                scene = random_scene(seed, configuration.rectangles, configuration.reflections, configuration.features)
+                scene = random_scene(
+                    seed, configuration.rectangles, configuration.most_reflections, configuration.features
+                )
             result = {"seed": seed, "title": scene.title} | await show(harness, scene)
             if result["wrong_vs_golden"]:
                 failed.append(seed)

@@ -184,7 +184,7 @@ def bench(output: Path, tmp_path_factory: pytest.TempPathFactory) -> Bench:
                 copy.write_text(without_power_up(file.read_text()))
         model = build_model(configuration, simulator, build=BUILD, verilog=verilog, defines=defines, flags=flags)
         job = Job(
-            configuration, scene=str(scene), output=str(output), reflections=configuration.reflections, seeds=seeds
+            configuration, scene=str(scene), output=str(output), reflections=configuration.most_reflections, seeds=seeds
         )
         run_bench(model, f"raycaster.{module}", job, output, plusargs=plusargs)
         return output

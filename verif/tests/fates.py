@@ -112,7 +112,7 @@ def check_control(leaf: Bench, config: Configuration, random: np.random.Generato
 
     for number, mask in enumerate(masks):
         usable = [index for index in range(count) if mask >> index & 1]
-        reflections = config.reflections if number < 2 else int(random.integers(config.reflections + 1))
+        reflections = config.most_reflections if number < 2 else int(random.integers(config.most_reflections + 1))
         held = {"rects_usable": mask, "picture_reflections": reflections, "reset_ray_caster": 0}
         fate = random_fate(random, usable, reflections, number)
         # Unusable rectangles are not visited, whatever the mask says.
@@ -141,7 +141,7 @@ def check_control(leaf: Bench, config: Configuration, random: np.random.Generato
         if not abandoned:
             for _ in range(int(random.integers(1, 4))):
                 # Rendering is over, so reflections may change.
-                after = {"picture_reflections": int(random.integers(config.reflections + 1))}
+                after = {"picture_reflections": int(random.integers(config.most_reflections + 1))}
                 drive({**held, **after, "enable": int(random.integers(2))}, {**quiet, "done": 1})
     if alone:
         width = leaf.seen["in_flight"].width

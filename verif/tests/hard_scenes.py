@@ -167,7 +167,7 @@ def traced_scene(random: np.random.Generator, config: Configuration, slopes: np.
         camera, table = scene_of(random, slopes, config.rectangles)
         table = with_looks(random, config, table)
         background = random.integers(256, size=3)
-        reflections = config.reflections if rich else int(random.integers(config.reflections + 1))
+        reflections = config.most_reflections if rich else int(random.integers(config.most_reflections + 1))
         if rich and random.random() < 0.7:
             table = mirrored_on(random, table, camera, slopes[0], reflections + 1)
         trace = tracer(config, eye=camera, background=background, slopes=slopes, reflections=reflections)
@@ -178,7 +178,7 @@ def traced_scene(random: np.random.Generator, config: Configuration, slopes: np.
             table = edged(random, config, golden, table)
             golden = trace(table)
         return camera, table, background, reflections, golden
-    raise AssertionError(f"no scene has a ray that meets mirrors {config.reflections} times; {repeat()}")
+    raise AssertionError(f"no scene has a ray that meets mirrors {config.most_reflections} times; {repeat()}")
 
 
 def pixel_word(config: Configuration, colour) -> int:

@@ -206,7 +206,7 @@ def design_on(board: OpenBoard, kind: str, directory: Path) -> Design | Processo
     serial = {"bus": "uart"} if kind == "serial" else {}
     config = configure(**options | {"rectangles": 3} | serial)
     if serial:
-        return Design(SMALL_SCENE, load_scene(SMALL_SCENE), config, config.reflections)
+        return Design(SMALL_SCENE, load_scene(SMALL_SCENE), config, config.most_reflections)
     return ProcessorDesign(write_program(SMALL_SCENE, config, directory), config)
 
 

@@ -18,7 +18,7 @@ from raycaster.scene import Light
 def mirror(ray: Ray, place: Place) -> Sequence[Value]:
     """1 if the ray has left a mirror, else 0; then the mirror's axis and distance from the eye, and flags of the axes
     of all mirrors in its starting point, if the design has them."""
-    with_corners = ray.config.reflections > 1
+    with_corners = ray.config.most_reflections > 1
     if place.bounce == 0:
         return 0, None, None, *(None,) * 3 * with_corners
     left = Place(place.bounce - 1, ray.winner(place.bounce - 1))

@@ -295,7 +295,7 @@ class SpanProbes(Description):
     @cached_property
     def names(self) -> Mapping[str, str]:
         """Full names of the signals that `events` reads, by block and name."""
-        config, mirrors = self.config, self.config.reflections > 0
+        config, mirrors = self.config, self.config.most_reflections > 0
         listed = {
             "dealer": "next_row left", "collector": "take head_word rows_left", "player": "view_run",
             "video": "x y pixel_end", "unit": "rects_fetch rects_index done",
@@ -472,7 +472,7 @@ class SpanProbes(Description):
     def probes(self) -> list[Probe]:
         """Probes in the order in which values depend on each other."""
         config, make, late = self.config, self._probe, division_cycles(self.config)
-        mirrors, light, patterns = config.reflections > 0, config.light, config.patterns
+        mirrors, light, patterns = config.most_reflections > 0, config.light, config.patterns
         eye, back, met = (" ".join(f"{name}_{axis}" for axis in AXES) for name in ("eye", "back", "met"))
         way, hidden = f"{back} {met} mirrored axis back distance", dict[str, Any](shown=False)
         line: dict[str, Any] = {"parts": ("number", "last", *LINE), "decode": self._line_asked, **hidden}

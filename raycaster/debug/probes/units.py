@@ -75,7 +75,7 @@ def indexed(ray: Ray, place: Place) -> int:
 def share(ray: Ray, place: Place) -> Sequence[int]:
     """Weight of a ray's colour in its pixel, as colour_share codes it."""
     parts = 4 if ray.config.materials else 2
-    weight = left = parts**ray.config.reflections
+    weight = left = parts**ray.config.most_reflections
     for bounce in range(place.bounce + 1):
         winner = ray.winner(bounce)
         mirrored = int(ray.rectangles.mirrors[winner]) if winner >= 0 else 0

@@ -111,7 +111,7 @@ def check_ray_unit(leaf: Bench, config: Configuration, random: np.random.Generat
     screen, basis = config.screen_geometry, UNTURNED
     pixels, rays, alive = [], leaf.some(rays), set()
     # Numbers of surfaces that a ray hits; each must occur, from none to the most.
-    fates, every_fate = set(), set(range(config.reflections + 2))
+    fates, every_fate = set(), set(range(config.most_reflections + 2))
     while len(pixels) < rays or fates != every_fate:
         row, column = (
             int(random.choice([0, 1, middle, count - 1, random.integers(count)]))
@@ -217,7 +217,7 @@ def scene_in_view(random: np.random.Generator, config: Configuration, axis: int)
         enabled[0] |= not anything
         table = Rectangles(table.corners, table.colours, enabled)
         background = random.integers(256, size=3)
-        reflections = int(random.integers(config.reflections + 1))
+        reflections = int(random.integers(config.most_reflections + 1))
         trace = tracer(config, background=background, reflections=reflections)
         ray = slopes[random.integers(len(slopes))][None]
         table = edged(random, config, trace(table, eye=camera, slopes=ray), table)

@@ -280,7 +280,7 @@ def any_chain(
     start = int(random.choice([0, int(random.integers(columns))]))
     stop = int(random.choice([columns, start + 1, int(random.integers(start + 1, columns + 1))]))
     chain, mirror = Chain(start, stop, tuple(camera.tolist()), (False, False, False)), (0, False)
-    for _ in range(int(random.integers(config.reflections + 1))):
+    for _ in range(int(random.integers(config.most_reflections + 1))):
         axis, plane = int(random.integers(3)), int(random.choice([0, 511, 256, *random.integers(512, size=2)]))
         far = plane - chain.eye[axis]
         back = chain.back[axis] != (far < 0)
@@ -362,7 +362,8 @@ def any_frame(random: np.random.Generator, config: Configuration, count: int | N
         table = Rectangles(corners, colours, np.ones(len(corners), dtype=bool))
         table = replace(table, enabled=np.arange(len(corners)) < count)
     table = with_looks(random, config, table)
-    reflections = int(random.integers(config.reflections + 1)) if random.random() < 0.3 else config.reflections
+    most = config.most_reflections
+    reflections = int(random.integers(most + 1)) if random.random() < 0.3 else most
     light = random_light(random, table, camera) if config.light and random.random() < 0.8 else None
     x, y, z = camera.tolist()
     red, green, blue = random.integers(256, size=3).tolist()

@@ -51,7 +51,7 @@ def test_ray_caster_renderer(config, leaf_of, random):
     corners, colours = np.array([[(301, 511, 104), (301, 192, 100)]]), random.integers(1, 256, size=(1, 3))
     table = Rectangles(corners, colours.astype(np.uint8), np.ones(1, dtype=bool))
     background = random.integers(1, 256, size=3)
-    scene = scene_inputs(camera, table, background, config.reflections) | sorted_rect(table, 0, "rects_rect")
+    scene = scene_inputs(camera, table, background, config.most_reflections) | sorted_rect(table, 0, "rects_rect")
     del scene["rects_usable"]
     start, frame = start_cycle(screen), screen.frame_cycles
     # From the cycle after each StartScreen on, the next scene.
@@ -63,11 +63,11 @@ def test_ray_caster_renderer(config, leaf_of, random):
     outputs = leaf.check(settled=2 + start + 6)[2:]
 
     slopes = primary_slopes(screen).reshape(-1, 3)
-    colours = model_of(config).trace(table, camera, background, slopes, config.reflections).colours
+    colours = model_of(config).trace(table, camera, background, slopes, config.most_reflections).colours
     golden = golden_words(config, colours)
     assert len(set(golden.flat)) > 1, "the rectangle must have an edge in view"
     empty = np.full_like(golden, pixel_word(config, background))
-    group = len(trace_cycles(config, [0], config.reflections)) + 3
+    group = len(trace_cycles(config, [0], config.most_reflections)) + 3
     assert group == engine_of(config).group_cycles(config)
     groups_in_time = min(config.groups, (screen.row_cycles - 1) // group)
     shown = golden.copy()

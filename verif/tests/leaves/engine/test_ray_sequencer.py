@@ -48,7 +48,7 @@ def test_fate_is_read_in_one_cycle(function, config, leaf_of, random):
     This detects a register too many or too few between the units and the control's use of their fate.
     """
     leaf = control_leaf(leaf_of, function, config)
-    usable, reflections = list(range(config.rectangles)), config.reflections
+    usable, reflections = list(range(config.rectangles)), config.most_reflections
     held = {"rects_usable": mask_of(usable), "fate_may_hit": mask_of(usable), "picture_reflections": reflections}
     for lost in (None, 0, 1, None):
         behind = [(bounce, index) for bounce in range(reflections + 1) for index in usable if random.random() < 0.5]

@@ -22,7 +22,7 @@ def mirrored_rays(random: np.random.Generator, config: Configuration, count: int
 
     They are as the engine meets them, and as extreme as its widths allow.
     """
-    reflections, steepest = config.reflections, (1 << exact_slope_bits(config)) - 1
+    reflections, steepest = config.most_reflections, (1 << exact_slope_bits(config)) - 1
     for _ in range(count):
         table = random_rectangles(random, count=8, closed=True)
         eye = random_camera(random, table).astype(np.int64)
@@ -49,7 +49,7 @@ def mirrored_rays(random: np.random.Generator, config: Configuration, count: int
 
 def extreme_rays(config: Configuration):
     """Yield the same for the furthest images of a camera and the steepest slopes, whose products need every bit."""
-    far, steepest = LAST * (config.reflections + 1), (1 << exact_slope_bits(config)) - 1
+    far, steepest = LAST * (config.most_reflections + 1), (1 << exact_slope_bits(config)) - 1
     corners = np.array([[[0, 0, 0], [0, LAST, LAST]], [[0, 0, 0], [LAST, 0, LAST]], [[0, 0, LAST], [LAST, LAST, LAST]]])
     table = Rectangles(corners, np.zeros((3, 3), dtype=np.uint8), np.ones(3, dtype=bool))
     for place in (far, LAST - far):
@@ -60,7 +60,7 @@ def extreme_rays(config: Configuration):
                     eye[axis], slope[axis] = place, -steepest if place > 0 else steepest
                     yield table, range(3), eye, slope, None
     # Planes close to the last mirror's, where a wrong bit of either distance matters.
-    for axis, away in product(range(3) if config.reflections else (), (-33, -9, -1, 0, 1, 9, 33)):
+    for axis, away in product(range(3) if config.most_reflections else (), (-33, -9, -1, 0, 1, 9, 33)):
         near = corners.copy()
         near[axis, :, axis] = WORLD_SIZE // 2 + away
         walls = Rectangles(near, np.zeros((3, 3), dtype=np.uint8), np.ones(3, dtype=bool))

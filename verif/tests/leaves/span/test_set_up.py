@@ -50,7 +50,7 @@ def test_set_up(options, leaf_of, random):
     config = span_config(**options)
     leaf = leaf_of(chain_bench, config, **chain_ports(config))
     leaf.case({"reset": 1, "begin_sweep": 0})
-    appended, kinds, every = {}, set(), 6 if config.reflections else 3
+    appended, kinds, every = {}, set(), 6 if config.most_reflections else 3
     for drawn in range(500):
         if drawn >= leaf.some(75) and (leaf.few or len(kinds) == every):
             break
@@ -179,7 +179,7 @@ def test_half_lines(options, leaf_of, random):
     assert leaf.few or numbers == {
         *range(1, 5),
         *([0] if config.turn or config.light else []),
-        *([5] if config.reflections else []),
+        *([5] if config.most_reflections else []),
     }
     for cycle, (slope, line) in asked_lines.items():
         seen = outputs[cycle]

@@ -128,13 +128,13 @@ def test_ray_caster_module(config, tmp_path, random):
             slopes = primary_slopes(screen, basis).reshape(-1, 3)
             table = with_looks(random, config, rectangles_in_view(random, camera, slopes, config.rectangles))
             background = random.integers(256, size=3)
-            colours = model_of(config).trace(table, camera, background, slopes, config.reflections).colours
+            colours = model_of(config).trace(table, camera, background, slopes, config.most_reflections).colours
             if len(np.unique(colours, axis=0)) > min(config.rectangles, 3):
                 break
         else:
             raise AssertionError(f"no scene shows more than {min(config.rectangles, 3)} colours")
         pictures.append(golden_words(config, colours))
-        bus.write_scene(camera, background, config.reflections, table, basis=basis)
+        bus.write_scene(camera, background, config.most_reflections, table, basis=basis)
         # Wait until the cycle after the next StartScreen.
         so_far = len(bus.stimulus) - 2 - start_cycle(screen) - 1
         bus.wait(-so_far % screen.frame_cycles)

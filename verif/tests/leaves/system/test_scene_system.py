@@ -30,7 +30,7 @@ def test_scene_system(tmp_path, random):
         camera, table, background, *_ = scene_in_view(random, config, 0)
         table = Rectangles(table.corners, table.colours, np.ones(config.rectangles, dtype=bool))
         holds = np.repeat(random.integers(1 << len(BUTTONS), size=frames // 3), 3)
-        trace = tracer(config, background=background, slopes=slopes, reflections=config.reflections)
+        trace = tracer(config, background=background, slopes=slopes, reflections=config.most_reflections)
         pictures = [trace(table, eye=position).colours for position in walk(camera, holds)]
         # Most random scenes look the same from everywhere.
         if len({picture.tobytes() for picture in pictures}) > frames // 2:
@@ -38,7 +38,7 @@ def test_scene_system(tmp_path, random):
     else:
         raise AssertionError("no walk changes the picture in most frames")
     scene = Scene(
-        reflections=config.reflections,
+        reflections=config.most_reflections,
         background=tuple(map(int, background)),
         camera=Camera(position=tuple(map(int, camera))),
         rect=tuple(rectangle_of(table, index) for index in range(len(table))),
