@@ -30,7 +30,7 @@ class Command:
 COMMANDS: Mapping[str, Command] = {
     "sim": Command("raycaster.sim.scenes", "draw scenes with the hardware and check every pixel"),
     "scenes": Command("raycaster.cli.scenes", "list the packaged scenes"),
-    "import": Command("raycaster.cli.import_level", "make a scene of a map of characters"),
+    "import": Command("raycaster.cli.import_level", "make a scene from a map of characters"),
     "options": Command("raycaster.cli.design_options", "list the options of a design, such as --engine"),
     "play": Command("raycaster.play.window", "play the game, or walk through a scene, in a window", "play"),
     "game": Command("raycaster.play.game", "run a recorded game and check every frame", "play"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster import`: make a scene file of a map of characters."""
+"""`raycaster import`: make a scene file from a map of characters."""
 
 from __future__ import annotations
 
