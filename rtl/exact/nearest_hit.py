@@ -8,19 +8,9 @@ from raycaster.hdl.signals import bit, unsigned
 
 @block
 def nearest_hit(
-    clk,
-    steps,
-    offered,
-    hit,
-    at_mirror,
-    numerator,
-    denominator,
-    found,
-    found_surface,
-    found_distance,
-    found_slope,
+    clk, steps, offered, hit, at_mirror, numerator, denominator, found, found_surface, found_distance, found_slope,
     found_at_mirror,
-):
+):  # fmt: skip
     """Keep the nearest hit: at steps.write_z_buf, take the offered hit if it is nearer than the stored one.
 
     t = numerator / denominator is nearer than another if numerator * other denominator < other numerator * denominator.

@@ -17,13 +17,10 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
     """Hold the camera: a scene_word for the position, for each vector of its basis if it turns, and for the light.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         bus: `SceneBus`; input.
         readback: unsigned, 32 bits; output, combinational: the shadow's word at bus.address, don't care at other
             addresses.
         camera: `Camera` of the live scene; output.
-        config: the design.
     """
     names = ("camera", *("forward", "right", "up") * config.turn, *("light",) * config.light)
     registers = [REGISTERS[name] for name in names]

@@ -15,7 +15,6 @@ def rect_rom(clk, rects, config: Configuration):
     Bits in which all rectangles agree are constants in Verilog, so that synthesis keeps no register for them.
 
     Args:
-        clk: the clock.
         rects: `Rects`; reads index and fetch, drives rect. usable is a constant, and not driven here, as not every
             engine reads it.
         config: the design. config.fixed holds the rectangles.

@@ -14,8 +14,6 @@ def rect_slot(clk, reset, bus, storing, index, number, bank, enable, flat, copie
     bus.commit and bus.go_live move no rectangle: they change which copy each bank holds.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         bus: `SceneBus`; reads commit and go_live.
         storing: strobe; the rectangle of slot index is stored at bank, which becomes the bank of the slot's shadow
             copy.

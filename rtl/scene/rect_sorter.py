@@ -17,7 +17,6 @@ def rect_sorter(written, rect, config: Configuration):
         written: `WrittenRect`; the corners may come in any order, a mirror of more than 4 quarters counts as 4, and a
             pattern whose cell is at least as large as the world counts as plain.
         rect: `Rect`; output, don't care if the rectangle has no plane.
-        config: the design.
     """
     cells = len(CELLS)
     axis, mirror, kind = unsigned(AXIS_BITS), unsigned(MIRROR_BITS), unsigned(KIND_BITS)

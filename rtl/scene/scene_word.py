@@ -16,7 +16,6 @@ def scene_word(clk, reset, bus, selected, implemented, shadow, live, first: int 
     already holds the last committed word.
 
     Args:
-        clk: the clock.
         reset: synchronous, active high; sets all three to first.
         bus: `SceneBus`; input.
         selected: flag; bus.address is the address of this word.

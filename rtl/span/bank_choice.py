@@ -9,7 +9,6 @@ def bank_choice(clk, run_0, run_1, run_2, run_3, run):
     """Register the run of up to four banks; all but one of them show 0.
 
     Args:
-        clk: the clock.
         run_0: unsigned.
         run_1: unsigned.
         run_2: unsigned.

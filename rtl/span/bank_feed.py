@@ -15,7 +15,6 @@ def bank_feed(
     keeps them apart.
 
     Args:
-        clk: the clock.
         write: strobe; one of these banks stores written.
         write_banks: unsigned, a bit for each bank, of which one is set; read with write, like the two below.
         write_place: unsigned, a place of a bank.

@@ -34,7 +34,6 @@ def cell_walker(
     The present cell is the quotient of P e, which is the line of edge 0, and of e times the cell's size.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset to idle.
         start: strobe; begins while idle.
         find: flag; read with start: cell is not known.

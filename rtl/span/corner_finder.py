@@ -21,7 +21,6 @@ def corner_finder(
     that was met in that point already lies strictly beyond, and before the first mirror there is none.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset.
         start: strobe; if needed, the line is asked for.
         chain: `Chain`; constant from start to done, like all other inputs of the span.

@@ -12,7 +12,6 @@ def division_stage(clk, remainder, digits, divisor, next_remainder, next_digits,
     """Keep a division in registers, and take its next steps: one or two bits of the quotient.
 
     Args:
-        clk: the clock.
         remainder: unsigned, as wide as divisor and less than it.
         digits: unsigned; the remaining digits of the dividend, above the quotient's digits so far.
         divisor: unsigned.

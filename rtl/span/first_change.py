@@ -31,13 +31,11 @@ def first_change(clk, reset, start, division, columns, done, config: Configurati
     lines that rise and lines that fall. If the quotient is not less than the number of columns, columns is don't care.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset, which ends all divisions.
         start: strobe; takes the line.
         division: `Division`; read with start.
         columns: unsigned output, `column_bits` bits; valid with done.
         done: output strobe, `division_cycles` after start.
-        config: the design.
     """
     bits, cycles, width = quotient_bits(config), division_cycles(config), divisor_bits(config) - 1
     value_bits, stages = line_bits(config), division_cycles(config) - 1

@@ -21,8 +21,6 @@ def frame_switch(
     After reset a black frame is whole.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         start_screen: strobe before the first row.
         run: flag of the live `Picture`; read in the cycle after take_scene.
         whole: strobe; the frame's last entry is written. A frame that is whole in the cycle of StartScreen is late.

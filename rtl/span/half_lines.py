@@ -44,7 +44,6 @@ def half_lines(
     For them `AHEAD` is e - N s - 1, and is always asked: the rectangle is between the light and the surface.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset, which ends the walk.
         start: strobe; begins with the rectangles of this chain.
         chain: `Chain`; constant from the cycle after start to done.
@@ -56,7 +55,6 @@ def half_lines(
         opened: output strobe; the lines of a rectangle follow.
         entry: output `Entry`, valid with opened; start and stop are 0.
         walked: output flag; all lines have been asked. Low before start.
-        config: the design.
     """
     far_bits, factor_bits, columns = eye_bits(config), line_factor_bits(config), column_bits(config)
     count, index_width = config.rectangles, index_bits(config)

@@ -17,7 +17,6 @@ def line_desk(
     """Evaluate the lines of whichever block asks, and divide for whichever block needs it: one at a time.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset.
         set_up_asks: `Asks` of `set_up`.
         sweep_asks: `Asks` of `sweep`.
@@ -27,7 +26,6 @@ def line_desk(
         step: `Vector`, the slope's change from column to column; see `line_eval`.
         aim: `Aim`; see `line_eval`.
         answer: output `Answer`, to all of them.
-        config: the design.
     """
     ask, divide = bit(), bit()
     query, division = Query(config), Division(config)

@@ -21,7 +21,6 @@ def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configur
     of the slope D(c) = slope + c step, negated or not.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset, after which no answer is under way.
         ask: strobe; evaluate the query of this cycle.
         query: `Query`; read with ask.
@@ -30,7 +29,6 @@ def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configur
             with `config.turn`; otherwise it is (0, 1, 0).
         aim: `Aim`; read with `config.light`, constant while lines from the light are evaluated.
         answer: output `Answer`, `LATENCY` cycles after its query.
-        config: the design.
     """
     factor_bits, slope_bits, growth_bits = line_factor_bits(config), operand_bits(config), operand_growth_bits(config)
     kept = line_bits(config)

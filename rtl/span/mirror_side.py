@@ -17,7 +17,6 @@ def mirror_side(clk, chain, rect, hidden, crosses, config: Configuration):
     side of the plane than that eye. The plane is E[a] + N or E[a] - N, with the mirror's axis a.
 
     Args:
-        clk: the clock.
         chain: `Chain`; constant from the cycle before the rectangle's on.
         rect: `Rect`.
         hidden: output flag; no point of the rectangle is met, as it is before the plane, or on it and parallel to it.

@@ -16,7 +16,6 @@ def operand_ends(
     """Compute D[axis](c) = slope[axis] + c step[axis] at two columns, two cycles later.
 
     Args:
-        clk: the clock.
         axis: unsigned, 2 bits; 0, 1, 2 for x, y, z.
         from_light: flag, read with `config.light`; all three come from aim instead, on axis 3 those of e.
         left: unsigned, `column_bits` bits.
@@ -28,7 +27,6 @@ def operand_ends(
         at_left: signed output, `operand_bits` bits; the component at the column left.
         at_right: signed output, `operand_bits` bits; the component at the column right.
         growth: signed output, `operand_growth_bits` bits; its change from column to column.
-        config: the design.
     """
     slope_bits, growth_bits, columns = span_slope_bits(config), step_bits(config), column_bits(config)
     # A column beyond the last, where all is don't care, may exceed the steepest slope.

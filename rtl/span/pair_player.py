@@ -11,7 +11,6 @@ def pair_player(clk, playing, visible_line, next_column, odd, head_0, head_1, ta
     """Show the runs of a line, which come in turn from the even and from the odd entries of the list.
 
     Args:
-        clk: the clock.
         playing: flag; there is a row to show.
         visible_line: flag, as in `Scan`.
         next_column: strobe, as in `Scan`, for each pair of columns; the left one is even.

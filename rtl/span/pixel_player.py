@@ -11,7 +11,6 @@ def pixel_player(clk, playing, visible_line, next_column, head, take, pixel):
     """Show the runs of a line, one after the other.
 
     Args:
-        clk: the clock.
         playing: flag; there is a row to show.
         visible_line: flag, as in `Scan`.
         next_column: strobe, as in `Scan`.

@@ -22,7 +22,6 @@ def read_ahead(
     """Read the runs of consecutive places from a `run_memory`, and offer them in order, one per cycle.
 
     Args:
-        clk: the clock.
         restart: strobe; drops all runs that have been read, and goes on at first. Needed before the first run, which
             is offered from the latency and two cycles after it on.
         first: unsigned, below places; read with restart.

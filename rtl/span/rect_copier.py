@@ -12,15 +12,12 @@ def rect_copier(clk, reset, start, rects, store, number, copying, config: Config
     """Fetch all live rectangles once per frame, so that each unit has a copy to read at its own pace.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         start: strobe; a frame begins, and its scene is live.
         rects: `Rects`; drives index and fetch.
         store: output strobe; rects.rect is the rectangle of this number.
         number: unsigned, `index_bits` bits; output, valid with store.
         copying: output flag; not all rectangles are stored. From the cycle after start on, for
             `config.rectangles` + 1 cycles.
-        config: the design.
     """
     last = config.rectangles - 1
     fetching = bit()

@@ -12,12 +12,10 @@ def rect_table(clk, store, number, rect, walk, config: Configuration):
     """Keep rectangles for a unit, and present the one that it fetches.
 
     Args:
-        clk: the clock.
         store: strobe; rect is kept.
         number: unsigned, `index_bits` bits; number of rect, read with store.
         rect: `Rect`; read with store.
         walk: `Rects`; index and fetch are read. rect is an output, a cycle after fetch; it stays until the next fetch.
-        config: the design.
     """
     words = [unsigned(len(rect.word)) for _ in range(config.rectangles)]
 

@@ -15,7 +15,6 @@ def row_dealer(clk, reset, new_frame, room, done, first_row, next_row, start, ro
     scenes a frame takes 0.1 to 0.7 % longer than with equal shares of the work for two to four units, and at most 2 %.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous, drops the frame.
         new_frame: strobe; a frame begins, and its scene is live. Not before the last row of the frame before began.
         room: unsigned, a bit for each unit; high if the unit may start a row.

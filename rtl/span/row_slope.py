@@ -17,13 +17,11 @@ def row_slope(clk, first_row, next_row, camera, slope, config: Configuration):
     it does not turn, that divided by 256: (view distance, -centre column, horizon row - row).
 
     Args:
-        clk: the clock.
         first_row: strobe; the rows begin again with row 0.
         next_row: strobe; the row below. Not in the cycle after first_row, nor with it.
         camera: `Camera`; only its basis is read, constant from the cycle before first_row to the last next_row.
         slope: output `Vector` of `span_slope_bits` bits; valid from the second cycle after first_row, and from the
             cycle after next_row.
-        config: the design.
     """
     screen = config.screen_geometry
     bits = span_slope_bits(config)

@@ -11,7 +11,6 @@ def run_bank(clk, write, write_place, written, read, read_place, shown, places: 
     """Keep runs in a block RAM, which is unknown at power-up.
 
     Args:
-        clk: the clock.
         write: strobe; stores written.
         write_place: unsigned, below places; read with write.
         written: unsigned; read with write.

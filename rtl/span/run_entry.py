@@ -14,7 +14,6 @@ def run_entry(run, ready, entry, config: Configuration):
         run: `Run`; ready is an output.
         ready: flag; the list takes the run.
         entry: `ListEntry`; output.
-        config: the design.
     """
     red, green, blue = (
         run.colour(end, end - config.colour_bits) for end in (3 * CHANNEL_BITS, 2 * CHANNEL_BITS, CHANNEL_BITS)

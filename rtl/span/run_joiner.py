@@ -15,12 +15,10 @@ def run_joiner(clk, reset, part, run, done, config: Configuration):
     The last run of a row ends at the number of columns.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset, which forgets all runs.
         part: `Run`; ready is an output, which waits for a run of another colour to leave.
         run: output `Run`; ready is an input.
         done: output strobe; the last run of the row was taken in the cycle before.
-        config: the design.
     """
     columns, width = config.screen_geometry.columns, column_bits(config)
 

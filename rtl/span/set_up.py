@@ -17,7 +17,6 @@ def set_up(
     """Find all entries of a chain, in the order of the table: exactly the columns in which a ray meets the rectangle.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset to idle.
         start: strobe; takes a chain while idle.
         chain: `Chain`; constant from the cycle after start to done.
@@ -29,7 +28,6 @@ def set_up(
         entry: output `Entry`; valid with append.
         count: unsigned output, `count_bits` bits; the number of entries so far. From done to the next start, of all.
         done: output strobe; all entries have been appended.
-        config: the design.
     """
     opened, idle, walked = (bit() for _ in range(3))
     met = Entry(config)

@@ -31,7 +31,6 @@ def shadow_finder(
     e. That is linear in the column, so these rays are a fan like that of a chain, whose eye is the light.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset to idle.
         start: strobe; begins while idle.
         chain: `Chain` whose rays see the surface. Constant from start to done, like all inputs up to stop.

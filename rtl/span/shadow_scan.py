@@ -15,7 +15,6 @@ def shadow_scan(
     """Find whether a column of a surface is in a shadow, and where that changes, or might: a pass over its shadows.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset to idle.
         start: strobe; begins a pass while idle.
         column: unsigned, `column_bits` bits. Constant from start to done, like stop and count.

@@ -12,14 +12,12 @@ def slope_start(clk, first_row, next_row, forward, right, up, component, config:
     """Compute view distance * forward - centre column * right + (horizon row - row) * up, row after row.
 
     Args:
-        clk: the clock.
         first_row: strobe; the rows begin again with row 0.
         next_row: strobe; the row below. Not in the cycle after first_row, nor with it.
         forward: signed, 10 bits; constant from the cycle before first_row on, like right and up.
         right: signed, 10 bits.
         up: signed, 10 bits.
         component: signed output; valid from the second cycle after first_row, and from the cycle after next_row.
-        config: the design.
     """
     screen = config.screen_geometry
     view_distance, centre_column, horizon_row = screen.view_distance, screen.centre_column, screen.horizon_row

@@ -27,13 +27,11 @@ def span_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
 
     Args:
         clk: the monitor's clock.
-        reset: synchronous, active high.
         picture: `Picture` of the live scene.
         camera: `Camera` of the live scene.
         rects: `Rects`; drives index and fetch, reads usable and rect.
         progress: `Progress`; output.
         vga: `Vga`; output.
-        config: the design.
     """
     screen, units, width = config.screen_geometry, config.units, pixel_bits(config)
     one_clock = screen.clocks_per_pixel == 1

@@ -23,7 +23,6 @@ def surface_cells(
     The present column of all levels is the first one of the surface that was painted last, and moves on with each step.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset to idle.
         paint: strobe, while idle; a surface is seen at this level.
         level: unsigned, `level_bits` bits; constant from paint to painted.

@@ -26,7 +26,6 @@ def surface_light(
     A surface that the light is not strictly in front of is dark, and without shadows.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset to idle.
         paint: strobe, while idle; a surface is seen at this level.
         level: unsigned, `level_bits` bits; constant from paint to painted, like chain, winner, camera, column, stop.

@@ -13,13 +13,11 @@ def surface_table(clk, paint, level, given, seen, shown, config: Configuration):
     """Hold the surface of each level, the number of mirrors before it.
 
     Args:
-        clk: the clock.
         paint: strobe; from now on a ray sees this surface at this level.
         level: unsigned, `level_bits` bits; read with paint.
         given: `Surface`; read with paint.
         seen: unsigned, `level_bits` bits; the level that is read.
         shown: output `Surface`; that of this level. Combinational.
-        config: the design.
     """
     memory = [unsigned(len(given.word)) for _ in range(1 << level_bits(config))]
 

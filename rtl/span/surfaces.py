@@ -27,7 +27,6 @@ def surfaces(
     Painting and steps take a cycle each if there is neither a pattern nor a light; first come cells, then shadows.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset to idle.
         paint: strobe, while idle; from now on a ray sees this surface at this level.
         level: unsigned, `level_bits` bits; constant from paint to painted, like all inputs up to stop; rect only up to

@@ -27,24 +27,9 @@ def picorv32_source() -> Path:
 @given_verilog(picorv32_source, outputs=("mem_valid", "mem_addr", "mem_wdata", "mem_wstrb"))
 @block
 def picorv32(
-    clk,
-    resetn,
-    mem_valid,
-    mem_ready,
-    mem_addr,
-    mem_wdata,
-    mem_wstrb,
-    mem_rdata,
-    pcpi_wr,
-    pcpi_rd,
-    pcpi_wait,
-    pcpi_ready,
-    irq,
-    ENABLE_COUNTERS64: int,
-    BARREL_SHIFTER: int,
-    ENABLE_FAST_MUL: int,
-    ENABLE_DIV: int,
-):
+    clk, resetn, mem_valid, mem_ready, mem_addr, mem_wdata, mem_wstrb, mem_rdata, pcpi_wr, pcpi_rd, pcpi_wait,
+    pcpi_ready, irq, ENABLE_COUNTERS64: int, BARREL_SHIFTER: int, ENABLE_FAST_MUL: int, ENABLE_DIV: int,
+):  # fmt: skip
     """Run RV32I with the extensions that the parameters enable; all other parameters keep their defaults.
 
     After reset the program starts at address 0, and must set the stack pointer itself. An illegal instruction or a
