@@ -86,9 +86,6 @@ def rect_setup(
         asked.next = reading and not reset
         at_hand.next = asked and not reset
         at_hand_2.next = at_hand and not reset
-
-    @always(clk.posedge)
-    def identify():
         number_0.next = number
         number_1.next = number_0
         number_2.next = number_1
@@ -161,12 +158,6 @@ def rect_setup(
     new_facet = facet.joined(usable=usable_2, axis=axis_2, distance=distance_2, way_q=way_q)
     first = start.joined(way_p=way_p, low_p=way_low_p, high_p=way_high_p, low_q=way_low_q, high_q=way_high_q)
 
-    @always(clk.posedge)
-    def present():
-        if at_hand_2:
-            facet.word.next = new_facet
-            start.word.next = first
-
     more_way_p, more_low_p, more_high_p, more_low_q, more_high_q = (signed(bound_bits) for _ in range(5))
 
     # A product grows if its slope component is D[y], the one that changes with the column.
@@ -187,8 +178,10 @@ def rect_setup(
     more = growth.joined(way_p=more_way_p, low_p=more_low_p, high_p=more_high_p, low_q=more_low_q, high_q=more_high_q)
 
     @always(clk.posedge)
-    def present_growth():
+    def present():
         if at_hand_2:
+            facet.word.next = new_facet
+            start.word.next = first
             growth.word.next = more
 
     return instances()

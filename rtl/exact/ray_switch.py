@@ -30,24 +30,19 @@ def ray_switch(
     active = bit()
 
     @always_comb
-    def choose_eye():
+    def choose_ray():
         if from_light:
             tested_eye.x.next = camera.light_x
             tested_eye.y.next = camera.light_y
             tested_eye.z.next = camera.light_z
-        else:
-            tested_eye.x.next = eye.x
-            tested_eye.y.next = eye.y
-            tested_eye.z.next = eye.z
-
-    @always_comb
-    def choose_slope():
-        if from_light:
             tested_slope.dx.next = shadow_slope.dx
             tested_slope.dy.next = shadow_slope.dy
             tested_slope.dz.next = shadow_slope.dz
             tested_signs.word.next = shadow_signs.word
         else:
+            tested_eye.x.next = eye.x
+            tested_eye.y.next = eye.y
+            tested_eye.z.next = eye.z
             tested_slope.dx.next = slope.dx
             tested_slope.dy.next = slope.dy
             tested_slope.dz.next = slope.dz

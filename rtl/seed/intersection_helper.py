@@ -100,11 +100,8 @@ def intersection_helper(
         valid.next = stored.towards and not overflow
 
     @always_comb
-    def step_forward():
+    def step():
         forward.next = a + quotient
-
-    @always_comb
-    def step_backward():
         backward.next = a - quotient
 
     @always(clk.posedge)

@@ -83,11 +83,8 @@ def scene_player(clk, reset, buttons, irq, avm_m0, config: Configuration, scene:
                 entry.next = entry + 1
 
     @always_comb
-    def look_up_address():
+    def look_up():
         avm_m0.address.next = addresses[int(entry)]
-
-    @always_comb
-    def look_up_word():
         word.next = words[int(entry)]
 
     # The camera's word is the only one that is not constant.
