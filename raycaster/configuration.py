@@ -136,7 +136,9 @@ class Options:
         description="resolution scale: 1; span: 1, 2 or 4, by default one ray per monitor pixel; "
         "with 180 rows also 3 or 6 (1920x1080)",
     )
-    pixels: Whole = Field(1, ge=1, le=2, description="pixels per clock: 1, or 2 (span, if each has its own column)")
+    pixels: Whole = Field(
+        1, ge=1, le=2, description="pixels per clock: 1, or 2 (span, with a ray for each pixel of a line)"
+    )
     fraction_bits: Whole = Field(0, ge=0, le=8, description="fraction bits of origins, planes and quotients")
     rounding: Rounding = Field("truncate", description="rounding of quotients: truncate or nearest")
     divider_bits: Whole | Literal["auto"] = Field("auto", description="quotient bits per cycle: auto, 1, 2 or 3")
@@ -145,8 +147,8 @@ class Options:
         ge=0,
         le=1 << 20,
         multiple_of=2,
-        description="runs of one colour that each of the two lists holds, in which frames are drawn (span); by default "
-        "120 per row, or a run per column",
+        description="capacity of each of the two frame lists, in runs of one colour (span); by default 120 per row, or "
+        "a run per column if that is less",
     )
     colour_bits: Whole = Field(8, ge=1, le=CHANNEL_BITS, description="bits per colour channel on the VGA output")
     screen: Literal["vga", "tiny", "play"] = Field(
