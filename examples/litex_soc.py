@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """RayCaster in a LiteX SoC: a VexRiscv draws with the C driver, on no board in particular.
 
-To get the SoC's Verilog, with its memory's contents and LiteX's headers, run:
+To get the SoC's Verilog, with its memory's contents and LiteX's headers, run in a clone of the project:
 
-    pip install raycaster[litex,play]
+    pip install '.[litex,play]'
     python examples/litex_soc.py build/litex_soc
 """
 
@@ -29,7 +29,9 @@ try:
 
     from raycaster.convert.litex import add_ray_caster
 except ModuleNotFoundError as missing:
-    raise SystemExit(f"error: {missing.name} is not installed; run: pip install 'raycaster[litex,play]'") from None
+    raise SystemExit(
+        f"error: {missing.name} is not installed; in a clone of the project, run: pip install '.[litex,play]'"
+    ) from None
 
 PROGRAM = Path(__file__).with_suffix(".c")
 
