@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The end of a span, and the entry that is seen after it."""
 
-from myhdl import Signal, always, always_comb, block, enum, instances
+from myhdl import Signal, always, always_comb, block, concat, enum, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, tied, unsigned
@@ -53,8 +53,11 @@ def sweep(
     rest, left_over = unsigned(len(count)), unsigned(len(count))
     # The entry that is compared with stop, and how it compares with the winner.
     present = Entry(config)
-    left, left_1, last, bound, bound_1, crossing, found_at = (unsigned(width) for _ in range(7))
-    opens, meets, nearer, same, outlasts, shortened = (bit() for _ in range(6))
+    left, left_1, at, last, bound, bound_1, crossing, found_at = (unsigned(width) for _ in range(8))
+    ahead, opens, meets, nearer, same, outlasts, shortened = (bit() for _ in range(7))
+    tested_rank, winner_rank, present_rank, heir_rank = (
+        unsigned(len(winner.distance) + len(winner.index)) for _ in range(4)
+    )
     opens_1, meets_1, nearer_1, same_1, outlasts_1 = (bit() for _ in range(5))
     judging, in_time, sooner, found, here, ordered, changes, crosses = (bit() for _ in range(8))
     take, settled, advance, rivalled, earlier, nearer_heir, same_heir, follows = (bit() for _ in range(8))
@@ -67,16 +70,23 @@ def sweep(
     # The first column of interest is where both are met, as an entry begins before it ends.
     @always_comb
     def see_left():
+        ahead.next = tested.start >= column
         left.next = column
-        if tested.start > column:
+        if tested.start >= column:
             left.next = tested.start
+
+    # Of two entries on the same axis, the one of the lower rank is nearer.
+    @always_comb
+    def see_ranks():
+        tested_rank.next = concat(tested.distance, tested.index)
+        winner_rank.next = concat(winner.distance, winner.index)
+        present_rank.next = concat(present.distance, present.index)
+        heir_rank.next = concat(heir.distance, heir.index)
 
     @always_comb
     def compare():
         same.next = tested.axis == winner.axis
-        nearer.next = (tested.distance < winner.distance) or (
-            (tested.distance == winner.distance) and (tested.index < winner.index)
-        )
+        nearer.next = tested_rank < winner_rank
         meets.next = tested.start < winner.stop
         outlasts.next = tested.stop > winner.stop
 
@@ -85,7 +95,7 @@ def sweep(
     def see_open():
         opens.next = (tested.index != winner.index) and (tested.stop > column)
         if gap:
-            opens.next = tested.start >= column
+            opens.next = ahead
 
     @always_comb
     def count_down():
@@ -111,20 +121,25 @@ def sweep(
             same_1.next = same
             outlasts_1.next = outlasts
 
+    # Where the entry would come first: where both are met, or after a division at the crossing.
+    @always_comb
+    def find_place():
+        at.next = left_1
+        if state == SweepState.CROSS:
+            at.next = crossing
+
     # An entry that does not begin too late; it may also begin where the winner ends.
     @always_comb
     def see_time():
         judging.next = (state == SweepState.SCAN) and held
         in_time.next = opens_1 and (left_1 <= stop)
-        sooner.next = left_1 < stop
+        sooner.next = at < stop
         follows.next = outlasts_1 and not shortened
 
     @always_comb
     def compare_heir():
         same_heir.next = present.axis == heir.axis
-        nearer_heir.next = (present.distance < heir.distance) or (
-            (present.distance == heir.distance) and (present.index < heir.index)
-        )
+        nearer_heir.next = present_rank < heir_rank
 
     @always(clk.posedge)
     def see_crossing():
@@ -150,15 +165,14 @@ def sweep(
             here.next = answer.left >= 0
             found.next = (answer.left >= 0) or ((answer.right < 0) and follows)
         elif state == SweepState.CROSS:
+            here.next = True
             found.next = crossed
 
     @always_comb
     def find_column():
-        found_at.next = left_1
-        if state == SweepState.CROSS:
-            found_at.next = crossing
-        elif not here:
-            found_at.next = stop
+        found_at.next = stop
+        if here:
+            found_at.next = at
 
     @always_comb
     def see_change():
@@ -172,8 +186,6 @@ def sweep(
     @always_comb
     def see_earlier():
         earlier.next = here and sooner
-        if state == SweepState.CROSS:
-            earlier.next = crossing < stop
 
     # Two that follow at the same column are compared there.
     @always_comb
