@@ -45,30 +45,37 @@ def row_collector(
     room = unsigned(bits_for(entries + 1))
     next_place = unsigned(len(place))
     wanted, ends = bit(), bit()
+    # Whether rows are left, and places, as the queues wait for these.
+    collecting, fits = bit(), bit()
 
     @always_comb
     def judge():
-        wanted.next = offered and (rows_left != 0)
+        wanted.next = offered and collecting
         ends.next = head.end == columns
 
     @always_comb
     def collect():
-        take.next = wanted and (room != 0)
-        full.next = wanted and (room == 0)
+        take.next = wanted and fits
+        full.next = wanted and not fits
 
     @always(clk.posedge)
     def count():
         if reset:
             rows_left.next = 0
+            collecting.next = False
         elif new_frame:
             rows_left.next = rows
+            collecting.next = True
             room.next = entries
+            fits.next = True
             next_place.next = first
         elif take:
             room.next = room - 1
+            fits.next = room != 1
             next_place.next = (next_place + 1) % (1 << len(next_place))
             if ends:
                 rows_left.next = rows_left - 1
+                collecting.next = rows_left != 1
 
     if units > 1:
 

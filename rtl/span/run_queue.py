@@ -23,7 +23,7 @@ def run_queue(
         run: `ListEntry`; is taken in each cycle with valid and ready.
         take: strobe; head is replaced by the next run. Only while offered.
         ready: output flag; the queue is not full.
-        room: output flag; there is room for all runs that a row can have.
+        room: output flag, a register; there is room for all runs that a row can have.
         offered: output flag; head is a run, at the earliest two cycles and `read_latency` after it was taken from the
             unit.
         head: `ListEntry`; output, the oldest run, valid while offered and constant until take.
@@ -32,6 +32,7 @@ def run_queue(
         bank: places of a bank of the memory.
     """
     last, most = places - 1, places - columns
+    too_many = most + 1
 
     put, fetch, more = bit(), bit(), bit()
     write_place, read_place = (unsigned(bits_for(places)) for _ in range(2))
@@ -51,7 +52,6 @@ def run_queue(
     @always_comb
     def accept():
         ready.next = unread != places
-        room.next = unread <= most
         more.next = unread != 0
         put.next = valid and (unread != places)
 
@@ -69,9 +69,14 @@ def run_queue(
     def count():
         if reset:
             unread.next = 0
+            room.next = True
         elif put and not fetch:
             unread.next = unread + 1
+            if unread == most:
+                room.next = False
         elif fetch and not put:
             unread.next = unread - 1
+            if unread == too_many:
+                room.next = True
 
     return instances()

@@ -124,6 +124,8 @@ always @* if (known) begin
     if (drawing) assert (rows_left + rows_taken == ROWS && room_left + entries_taken == ENTRIES);
     if (drawing) assert (dut.row_collector_i.next_place == first + entries_taken);
     else assert (rows_left == 0 && !write);
+    assert (dut.row_collector_i.collecting == (rows_left != 0));
+    if (drawing) assert (dut.row_collector_i.fits == (room_left != 0));
     if (waits && !black) assert (whole[upper]);
     if (drawing && settled) assert (dut.row_dealer_i.left + dealt == ROWS && dut.row_dealer_i.turn == dealt % UNITS);
     else assert (dut.row_dealer_i.left == 0 && (!drawing || dealt == 0));
