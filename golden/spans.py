@@ -294,12 +294,12 @@ class Drawing:
 
     def draw(self) -> Row:
         """Draw the row."""
-        self.now += 1
+        self.now += 2
         start = Chain(0, self.model.columns, tuple(int(one) for one in self.model.camera), (False, False, False))
         self.chain(start, 4**self.model.reflections)
-        # The last run passes two registers.
-        self.result.cycles = self.now + 2
-        self.result.taken.append(self.now + 1)
+        # The last run passes three registers.
+        self.result.cycles = self.now + 3
+        self.result.taken.append(self.now + 2)
         return self.result
 
     # -- Chains and their spans
@@ -466,7 +466,7 @@ class Drawing:
         if runs and runs[-1][1] == mixed:
             runs.pop()
         elif runs:
-            self.result.taken.append(self.now)  # nothing can be joined to the run before
+            self.result.taken.append(self.now + 1)  # nothing can be joined to the run before
         runs.append((end, mixed))
 
     # -- The entries of a chain

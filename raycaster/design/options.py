@@ -67,7 +67,7 @@ class CommandParser(argparse.ArgumentParser):
         super().__init__(
             prog=f"raycaster {name}",
             usage=argparse.SUPPRESS,
-            description=purpose[0].upper() + purpose[1:],
+            description=purpose,
             add_help=False,
             formatter_class=lambda prog: _Help(prog, max_help_position=24, width=_help_width()),
         )

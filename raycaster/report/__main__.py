@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster report`: compare the error of designs with their run time and cells, also in stiff and extreme scenes."""
+"""`raycaster report`: error against run time and cells, and behaviour in stiff and extreme scenes."""
 
 from __future__ import annotations
 

@@ -35,8 +35,8 @@ def painter(
         seen: unsigned output, `level_bits` bits; the level to read, or to go on.
         step: output flag, driven with patterns or a light; the level must go on to place. High up to stepped.
         place: unsigned output, `column_bits` bits; the column after the run.
-        run: output `Run`; ready is an input.
-        emitted: output strobe; the span's last run has been taken.
+        run: output `Run`; ready is an input. A register, since the runs before it are compared with it.
+        emitted: output strobe; the span's last run is in that register in the next cycle.
         config: the design.
     """
     reflections, share_width = config.most_reflections, weight_bits(config)
@@ -44,7 +44,7 @@ def painter(
 
     state = Signal(PaintState.IDLE)
     colour, mixed = Colour(), Colour()
-    last, taken = bit(), bit()
+    last, offers = bit(), bit()
     # Without patterns and a light, a span is one run.
     changing = config.patterns or config.light
     whole, again = (bit(), bit()) if changing else (tied(1, 1), tied(0, 1))
@@ -65,8 +65,7 @@ def painter(
     @always_comb
     def see_end():
         last.next = seen == level
-        taken.next = (state == PaintState.OFFER) and run.ready
-        run.valid.next = state == PaintState.OFFER
+        offers.next = (state == PaintState.OFFER) and not run.valid
 
     if changing:
 
@@ -91,7 +90,7 @@ def painter(
 
     @always_comb
     def see_emitted():
-        emitted.next = taken and whole
+        emitted.next = offers and whole
 
     @always(clk.posedge)
     def advance():
@@ -101,14 +100,14 @@ def painter(
             state.next = PaintState.SUM
         elif (state == PaintState.SUM) and last:
             state.next = PaintState.OFFER
-        elif taken:
+        elif offers:
             state.next = PaintState.STEP
             if whole:
                 state.next = PaintState.IDLE
 
     @always(clk.posedge)
     def add():
-        if emit or again or taken:
+        if emit or again or offers:
             seen.next = 0
             red.next = 0
             green.next = 0
@@ -139,9 +138,16 @@ def painter(
     def mix():
         mixed.word.next = shown
 
-    @always_comb
+    @always(clk.posedge)
     def offer():
-        run.end.next = place
-        run.colour.next = mixed.word
+        if reset:
+            run.valid.next = False
+        elif offers:
+            run.valid.next = True
+        elif run.ready:
+            run.valid.next = False
+        if offers:
+            run.end.next = place
+            run.colour.next = mixed.word
 
     return instances()

@@ -44,7 +44,8 @@ def span_control(
         frame: `Frame` of the level below; read where that level goes on.
         painted: strobe; the level has been painted.
         emitted: strobe; the span's run has been taken.
-        begin_set_up: output strobe, in the cycle before the chain is valid.
+        begin_set_up: output strobe, at the latest in the cycle before the chain is valid: a cycle after start, so that
+            the way from start is short.
         begin_sweep: output strobe, in the cycle before the chain, its winner, its column and its count are valid.
         begin_corner: output strobe; apply the corner rule.
         begin_paint: output strobe; paint the columns from column up to stop.
@@ -70,7 +71,7 @@ def span_control(
     weight_width = weight_bits(config)
 
     state = Signal(SpanState.IDLE)
-    entering, empty = bit(), bit()
+    begins, entering, empty = bit(), bit(), bit()
     leaf, ending = (bit(), bit()) if mirrors else (tied(1, 1), tied(1, 1))
     first_chain = Chain(config)
     frame_chain = Chain(config) if mirrors else Chain(config).tie({})
@@ -95,7 +96,7 @@ def span_control(
 
     @always_comb
     def operate():
-        begin_set_up.next = (state == SpanState.DESCEND) or (start and (state == SpanState.IDLE))
+        begin_set_up.next = begins or (state == SpanState.DESCEND)
         begin_sweep.next = (state == SpanState.INHERIT) or ((state == SpanState.SET_UP) and set_up_done)
         begin_corner.next = (state == SpanState.SPAN) and not leaf
         begin_paint.next = entering and (state == SpanState.PAINT)
@@ -116,6 +117,7 @@ def span_control(
             mirrored.next = rect.mirror
 
     if mirrors:
+        reflections = unsigned(len(picture.reflections))
 
         @always_comb
         def see_first_weight():
@@ -124,9 +126,15 @@ def span_control(
                 if picture.reflections == i:
                     first_weight.next = 1 << (2 * i)
 
+        # The live scene is far from most units.
+        @always(clk.posedge)
+        def keep_reflections():
+            if state == SpanState.IDLE:
+                reflections.next = picture.reflections
+
         @always_comb
         def judge():
-            leaf.next = gap or (level == picture.reflections) or (mirrored == 0)
+            leaf.next = gap or (level == reflections) or (mirrored == 0)
 
         @always_comb
         def see_weight():
@@ -156,6 +164,7 @@ def span_control(
 
     @always(clk.posedge)
     def step():
+        begins.next = start and (state == SpanState.IDLE) and not reset
         entering.next = False
         if reset:
             state.next = SpanState.IDLE

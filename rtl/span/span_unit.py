@@ -197,13 +197,15 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
             first_slope.y.next = slope.y
             first_slope.z.next = slope.z
 
+    # The camera is far from most units.
     if config.turn:
 
-        @always_comb
-        def see_step():
-            step.x.next = camera.right_x
-            step.y.next = camera.right_y
-            step.z.next = camera.right_z
+        @always(clk.posedge)
+        def keep_step():
+            if start:
+                step.x.next = camera.right_x
+                step.y.next = camera.right_y
+                step.z.next = camera.right_z
 
     # One of them works at a time.
     @always_comb

@@ -347,7 +347,7 @@ def command_parser() -> CommandParser:
     """Build the parser of the command line."""
     parser = CommandParser("verify dvi", __doc__, "boxes")
     parser.add_argument("--board", default="ulx3s", help=f"{', '.join(board_names(OpenBoard))} (default: %(default)s)")
-    add_scene_argument(parser, "scene to show (mirror_room)", default=find_scene("mirror_room"))
+    add_scene_argument(parser, "what to show (mirror_room)", default=find_scene("mirror_room"))
     parser.add_argument("--frames", type=int, default=1, help="number of frames to check (default: %(default)s)")
     add_simulator_option(parser)
     parser.add_argument("--output", type=Path, default=Path("build/dvi"), help="output directory (%(default)s)")

@@ -61,17 +61,6 @@ def test_every_module_is_on_the_page_of_the_structure():
     assert all(re.search(rf"\b{name}\b", listed) for name in there)
 
 
-def test_the_blocks_of_the_original_design_are_where_the_page_says():
-    """Each module in the table is a file of a folder in its row, or comes from the generator there."""
-    _, section = (ROOT / "docs/structure.md").read_text().split("## Blocks of the original design")
-    rows = re.findall(r"^\|[^|]*\| (`.*) \| (`.*`) \|$", section.partition("\n## ")[0], re.M)
-    assert rows
-    for modules, folders in rows:
-        places = re.findall(r"`([\w/.]+)`", folders)
-        for name in re.findall(r"`(\w+)`", modules):
-            assert any((ROOT / place).is_file() or (ROOT / f"rtl/{place}/{name}.py").exists() for place in places), name
-
-
 def test_the_example_module_works(leaf_of, random, tmp_path: Path, monkeypatch):
     """The module and the leaf test in `docs/extend.md` work as described."""
     page = (ROOT / "docs/extend.md").read_text()

@@ -337,15 +337,15 @@ class SpanProbes(Description):
         deals = zip(series["dealer.next_row"], series["dealer.left"], strict=True)
         start = next((cycle for cycle, deal in enumerate(deals) if deal == (1, rows_left)), viewed)
         # A chain is there from the cycle after the strobe on.
-        events, counts, begin = [Event("start", start, Place(0))] if start < viewed else [], Counter[Any](chains=1), 0
+        events, counts, begin = [Event("start", start, Place(0))] if start < viewed else [], Counter[Any](), 0
         for cycle in cycles[start + 1 : viewed]:
             now = {key: values[cycle] or 0 for key, values in series.items()}
             events += self._steps(now, cycle, sight, counts)
             if now["painter.run_valid"] and not series["painter.run_valid"][cycle - 1]:
                 end = now["painter.run_end"]
                 if sight.sees(begin, end):
-                    # Each level was summed in a cycle before.
-                    levels = enumerate(sight.surfaces, cycle - len(sight.surfaces))
+                    # Each level was summed in a cycle before, and the sum went into the register.
+                    levels = enumerate(sight.surfaces, cycle - 1 - len(sight.surfaces))
                     events += [Event("seen", at, Place(i), values) for i, (at, values) in enumerate(levels)]
                     events.append(Event("mixed", cycle, Place(sight.last), sight.mixed))
                 begin = end

@@ -21,6 +21,19 @@ def test_painter(patterns, reflections, leaf_of, random):
     bits |= {"seen_colour": RGB_BITS, **dict.fromkeys(("stop", "next_column", "place"), column_bits(config))}
     leaf = leaf_of(painter, config, run=lambda: Run(config), **bits)
     leaf.case({"reset": 1, "emit": 0, "run_ready": 0})
+    held, stop = None, 0
+
+    def cycle(inputs, outputs=None, run=None):
+        """Add a cycle in which this run is offered to the register, and return whether it takes the run."""
+        nonlocal held
+        ready, takes = int(random.integers(4) > 0), run is not None and held is None
+        emitted = int(takes and run["run_end"] == stop)
+        leaf.case(inputs | {"run_ready": ready}, {"run_valid": int(held is not None), "emitted": emitted})
+        leaf.expect(outputs)
+        leaf.expect(held)
+        held = run if takes else None if ready else held
+        return takes
+
     for _ in range(leaf.some(120)):
         fewer = int(random.integers(reflections + 1))
         level, left, shares = int(random.integers(fewer + 1)), 4**fewer, []
@@ -29,31 +42,27 @@ def test_painter(patterns, reflections, leaf_of, random):
             shares.append(left * own // 4)
             left = left * (4 - own) // 4
         stop = int(random.integers(1, 65))
-        leaf.case({"reset": 0, "emit": 1, "level": level, "stop": stop, "picture_reflections": fewer})
+        cycle({"reset": 0, "emit": 1, "level": level, "stop": stop, "picture_reflections": fewer})
         place, inputs = -1, {"emit": 0}
         while place < stop:
             changes = [int(random.choice([stop, int(random.integers(place + 1, stop + 1))])) for _ in shares]
             colours = [random.choice([0, 255, *random.integers(256, size=3)], 3).tolist() for _ in shares]
             for number, (share, colour, change) in enumerate(zip(shares, colours, changes, strict=True)):
                 surface = {"seen_share": share, "seen_colour": int.from_bytes(bytes(colour)), "next_column": change}
-                leaf.case(inputs | surface, {"seen": number, "run_valid": 0, "emitted": 0})
+                cycle(inputs | surface, {"seen": number})
                 inputs = {}
             place = min(changes) if patterns else stop
             mixed = bytes(
                 sum(share * colour[channel] for share, colour in zip(shares, colours, strict=True)) // 4**fewer
                 for channel in range(3)
             )
-            wanted = {"run_valid": 1, "run_end": place, "run_colour": int.from_bytes(mixed)}
-            for _ in range(int(random.integers(3))):
-                leaf.case({"run_ready": 0}, wanted | {"emitted": 0})
-            leaf.case({"run_ready": 1}, wanted | {"emitted": int(place == stop)})
-            inputs = {"run_ready": 0}
+            while not cycle({}, {"place": place}, {"run_end": place, "run_colour": int.from_bytes(mixed)}):
+                pass
             for number in range(level + 1 if place < stop else 0):
                 for stepped in [0] * int(random.integers(3)) + [1]:
-                    leaf.case(inputs | {"stepped": stepped}, {"step": 1, "seen": number, "place": place})
-                    inputs = {}
+                    cycle({"stepped": stepped}, {"step": 1, "seen": number, "place": place})
             inputs = {"stepped": 0}
-        leaf.case({"run_ready": 0}, {"run_valid": 0})
+        cycle(inputs)
     leaf.check(spare=True)
 
 
