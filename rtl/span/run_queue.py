@@ -32,11 +32,11 @@ def run_queue(
         bank: places of a bank of the memory.
     """
     last, most = places - 1, places - columns
-    too_many = most + 1
+    too_many, minus_one = most + 1, (1 << bits_for(places + 1)) - 1
 
     put, fetch, more = bit(), bit(), bit()
     write_place, read_place = (unsigned(bits_for(places)) for _ in range(2))
-    unread = unsigned(bits_for(places + 1))
+    unread, change = (unsigned(bits_for(places + 1)) for _ in range(2))
     shown = run.twin()
 
     memory = run_memory(
@@ -65,18 +65,22 @@ def run_queue(
             else:
                 write_place.next = write_place + 1
 
+    @always_comb
+    def see_change():
+        change.next = 1
+        if fetch:
+            change.next = minus_one
+
     @always(clk.posedge)
     def count():
         if reset:
             unread.next = 0
             room.next = True
-        elif put and not fetch:
-            unread.next = unread + 1
-            if unread == most:
+        elif put != fetch:
+            unread.next = (unread + change) % (1 << len(unread))
+            if put and (unread == most):
                 room.next = False
-        elif fetch and not put:
-            unread.next = unread - 1
-            if unread == too_many:
+            elif fetch and (unread == too_many):
                 room.next = True
 
     return instances()
