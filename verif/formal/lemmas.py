@@ -246,7 +246,7 @@ between: a linear value that is less than another at both ends of a row is less 
 shares: if m quarters are mirrored, a weight is the sum of what the mirror keeps and what it passes on
   given 4*T == (4 - m)*s + m*U, 4*v == w*m
   then w*T == (w - v)*s + v*U
-sign-change: a line of growth -g from f = y, or of growth g from f = -y - 1, keeps its sign for floor(y/g) columns
+sign-change: a line of growth -g from f = y, or g from f = -y - 1, keeps its sign for the next floor(y/g) columns
   integers, given g > 0, y >= 0, y == g*q + r, 0 <= r < g, i >= 0
   then ((y - i*g >= 0) == (i <= q)) and ((-y - 1 + i*g < 0) == (i <= q))
 one-is-before: of two lines A - s and -A - t, with s + t = 1, exactly one is not negative
