@@ -28,6 +28,7 @@ from raycaster.hdl.internals import (
 )
 from raycaster.hdl.records import Field, block_arguments, signals_in
 from raycaster.hdl.signals import Tied, Unconnected, Unset
+from raycaster.hdl.source import prepare
 
 Connection = SignalType | str | None
 """A signal, a number in Verilog notation, or nothing."""
@@ -146,9 +147,7 @@ class Contents:
         for name, known in block.memdict.items():
             if any(known.mem is one for one in lists) and all(known.mem is not one for one in self.memories.values()):
                 self.memories[name] = known.mem
-        for process in processes:
-            internals.check_statements(process)
-        trees = iter(internals.analysed(processes))
+        trees = iter(internals.analysed(processes, prepare))
         self.parts = [next(trees) if isinstance(part, Process) else part for part in parts]
         for part, tree in zip(parts, self.parts, strict=True):
             if isinstance(part, Process):
@@ -201,7 +200,8 @@ class Contents:
             if internals.keeps(part):
                 begun = [part.symdict[name] for name in (*part.outputs, *part.outmems)]
                 self.starting |= {id(one) for one in begun if not isinstance(one, Unset)}
-            if internals.is_combinational(part) and all(isinstance(one, (Tied, Constant)) for one in part.senslist):
+            known = all(isinstance(part.sigdict[name], (Tied, Constant)) for name in part.inputs)
+            if internals.is_combinational(part) and known and not part.hasLos:
                 reason = "reads constants only, and Verilog would never run it; compute their values outside of it"
                 self._refuse(f"{part.name} {reason}", part.name)
             if not internals.keeps(part):

@@ -15,7 +15,7 @@ from typing import Any
 REWORDED = {
     r"Signal has multiple drivers: (\w+)": r"\1 or a signal that it is cut from has two drivers; connect a new signal",
     r"Free variable should be a Signal or an int: (\w+)": r"\1 is neither a signal nor an int, and Verilog's "
-    r"functions know nothing else around them; write it out in the function",
+    r"functions know nothing else around them; write it out in the function, or make it a name of the module",
     r"Local variable may be referenced before assignment: (\w+)": r"\1 may have no value here; assign to it first",
     r"Type mismatch with earlier assignment: (\w+)": r"\1 had a value of another type before; take another name",
     r"Nr of bits mismatch with earlier assignment: (\w+)": r"\1 had another width before; write \1[:] = ...",
@@ -27,6 +27,15 @@ REWORDED = {
     r"Not supported: non-boolean argument in logical operator": r"and, or, not: an operand is a word, not a bit; "
     r"compare it with != 0",
     r"Not supported: true division.*": r"Verilog has no true division; write //",
+    r"Not supported: multiple assignments": r"Verilog has no multiple assignments; write one for each target",
+    r"Not supported: lambda statement": r"Verilog has no lambda; write a function with def",
+    r"Requirement violation: Expected .*": r"Verilog counts loops by numbers; write for k in range(...)",
+    r"Requirement violation: .*-else .*": r"Verilog has no else of a loop; keep what was found in a variable",
+    r"modbv object should have full bit vector range: (\w+)": r"\1 is a modbv of less than all values of its bits; use "
+    r"an intbv, and write % or if",
+    r"intbv object should have a bit width: (\w+)": r"an intbv needs a width here: \1; write intbv(0)[8:] or "
+    r"intbv(0, min=-8, max=8)",
+    r"delay argument in @always decorator": r"hardware waits for no time; wait for a clock",
     r"Not supported: (.*)": r"Verilog has no \1; write it otherwise",
     r"sensitivity list is empty": r"the process reads no signal, so nothing would run it; use tied()",
     r"\w+: A block should return block or instantiator objects": r"a block returns its processes and instances; end "

@@ -15,7 +15,7 @@ import functools
 import operator
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import Any, NamedTuple, NoReturn
 
 from myhdl import concat, intbv
@@ -47,6 +47,17 @@ COMPUTED: Mapping[type, Callable[..., Any]] = {
     ast.USub: operator.neg, ast.UAdd: operator.pos, ast.Invert: operator.invert,
 }  # fmt: skip
 """Operators of numbers."""
+
+COMPARED: Mapping[type, Callable[..., Any]] = {
+    ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Gt: operator.gt, ast.GtE: operator.ge, ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+}  # fmt: skip
+"""Comparisons of numbers."""
+
+OPPOSITES = {
+    ast.Eq: ast.NotEq, ast.NotEq: ast.Eq, ast.Gt: ast.LtE, ast.LtE: ast.Gt, ast.Lt: ast.GtE, ast.GtE: ast.Lt,
+}  # fmt: skip
+MIRRORED = {ast.Gt: ast.Lt, ast.Lt: ast.Gt, ast.GtE: ast.LtE, ast.LtE: ast.GtE}
 
 CARRYING = (ast.Add, ast.Sub, ast.Mult, ast.LShift, ast.BitAnd, ast.BitOr, ast.BitXor)
 """Operators whose lowest bits depend on the lowest bits of their operands only."""
@@ -216,6 +227,15 @@ class Expressions:
             case ast.UnaryOp() if type(node.op) in COMPUTED:
                 value = self.constant(node.operand)
                 return None if value is None else COMPUTED[type(node.op)](int(value))
+            case ast.Compare(left=left, ops=[op], comparators=[right]) if self._assumed and type(op) in COMPARED:
+                sides = self.constant(left), self.constant(right)
+                return None if None in sides else COMPARED[type(op)](*sides)
+            case ast.BoolOp() if self._assumed:
+                values, ends = [*map(self.constant, node.values)], isinstance(node.op, ast.Or)
+                return ends if ends in values else None if None in values else not ends
+            case ast.UnaryOp(op=ast.Not()) if self._assumed:
+                value = self.constant(node.operand)
+                return None if value is None else not value
             case ast.Call(args=[argument]) if _called(node) is len:
                 return len(self._object(argument))
             case ast.Call(args=[ast.Constant(value=str(value))]) if _called(node) is ord:
@@ -323,7 +343,10 @@ class Expressions:
         """
         runs = 0
         if isinstance(node, ast.For):
-            numbers, name = range(*self.loop(node)), ast.unparse(node.target)
+            with self.assuming(dict.fromkeys(loops, 0)):
+                if None in map(self.constant, self.loop(node)[:2]):
+                    self.refuse(node, "synthesis needs constant bounds of a loop; write a number, and if in the loop")
+            numbers, name = self.numbers(node), ast.unparse(node.target)
             if name in loops:
                 self.refuse(node, f"{name} is the variable of the loop around it; take another name")
             found = Range(min(numbers, default=0), max(numbers, default=0))
@@ -355,14 +378,53 @@ class Expressions:
     @contextmanager
     def within(self, node: Any) -> Iterator[None]:
         """Make a context in which a loop's variable has its values there; elsewhere, it has those of all loops."""
-        name, numbers = node.target.id, range(*self.loop(node))
-        before = self._ranges[name]
-        if numbers:
-            self._ranges[name] = Range(min(numbers), max(numbers))
+        numbers = self.numbers(node)
+        with self._narrowed({node.target.id: Range(min(numbers), max(numbers))} if numbers else {}):
+            yield
+
+    @contextmanager
+    def where(self, test: ast.expr, truth: bool, statement: ast.stmt | None = None) -> Iterator[None]:
+        """Make a context in which a condition is true, or false; it limits names that a statement does not change."""
+        changed = {*_changed(statement)} if statement else ()
+        with self._narrowed({name: limits for name, limits in self._limits(test, truth) if name not in changed}):
+            yield
+
+    @contextmanager
+    def _narrowed(self, ranges: Mapping[str, Range]) -> Iterator[None]:
+        before = self._ranges
+        self._ranges = {**before, **ranges}
         try:
             yield
         finally:
-            self._ranges[name] = before
+            self._ranges = before
+
+    def _limits(self, test: ast.expr, truth: bool) -> Iterator[tuple[str, Range]]:
+        """Yield names and their ranges where a condition is true, or false."""
+        match test:
+            case ast.UnaryOp(op=ast.Not()):
+                yield from self._limits(test.operand, not truth)
+            case ast.BoolOp() if isinstance(test.op, ast.And) == truth:
+                with ExitStack() as before:
+                    for value in test.values:
+                        found = dict(self._limits(value, truth))
+                        before.enter_context(self._narrowed(found))
+                        yield from found.items()
+            case ast.Compare(left=left, ops=[op], comparators=[right]):
+                kind = type(op) if truth else OPPOSITES.get(type(op))
+                for one, relation, other in ((left, kind, right), (right, MIRRORED.get(kind, kind), left)):
+                    name = one.id if isinstance(one, ast.Name) else ""
+                    known = self._object(one) if name else None
+                    if not isinstance(getattr(known, "val", known), (int, intbv)) or self.constant(one) is not None:
+                        continue
+                    (low, high), (first, last) = self.range(one), self.range(other)
+                    if relation in (ast.Gt, ast.GtE, ast.Eq):
+                        low = max(low, first + (relation is ast.Gt))
+                    if relation in (ast.Lt, ast.LtE, ast.Eq):
+                        high = min(high, last - (relation is ast.Lt))
+                    if relation is ast.NotEq and first == last:
+                        low, high = low + (low == first), high - (high == first)
+                    if low <= high:
+                        yield name, Range(low, high)
 
     def is_full(self, subject: ast.expr, patterns: Sequence[ast.expr]) -> bool:
         """Return True if these values are all that an expression may have."""
@@ -373,17 +435,27 @@ class Expressions:
         low, high = self.range(subject)
         return len({self.constant(one) for one in patterns} - {None}) > high - low
 
-    def loop(self, node: Any) -> tuple[int, int, int]:
-        """Return the bounds of a loop: the first value, the end and the step."""
-        assert isinstance(node.iter, ast.Call)
-        values = [self.constant(argument) for argument in node.iter.args]
-        if None in values:
-            self.refuse(node, "synthesis needs constant bounds of a loop; write a number, and if in the loop")
+    def loop(self, node: Any) -> tuple[ast.expr, ast.expr, int]:
+        """Return the bounds of a loop: the first value, the end, which is not reached, and the step."""
+        given, step = node.iter.args, 1
+        if len(given) == 3:
+            step = self.constant(given[2])
+            if not step:
+                self.refuse(node, "synthesis needs a constant step of a loop; write a number")
+        start, stop = given[:2] if len(given) > 1 else (ast.copy_location(ast.Constant(0), node), given[0])
         if _called(node.iter) is range:
-            start, stop, step = (0, *values, 1) if len(values) == 1 else (*values, 1)[:3]
             return start, stop, step
-        first, end, step = (*values, 0, 1) if len(values) == 1 else (*values, 1)[:3]
-        return first - 1, end - 1, -step
+        first, end = given[:2] if len(given) > 1 else (given[0], start)
+        one = ast.Constant(1)
+        first, end = (ast.copy_location(ast.BinOp(bound, ast.Sub(), one), node) for bound in (first, end))
+        return first, end, -step
+
+    def numbers(self, node: Any) -> range:
+        """Return the values of a loop's variable, or of its bounds vary, a range that contains them."""
+        start, stop, step = self.loop(node)
+        one, other = self.range(start), self.range(stop)
+        first, end = (one.low, other.high) if step > 0 else (one.high, other.low)
+        return range(first, end, step if one.low == one.high else step // abs(step))
 
     def _returned(self, node: ast.Call) -> Range:
         """Return the range of a function's result."""
@@ -575,7 +647,10 @@ class Expressions:
             case ast.UnaryOp(op=ast.USub() | ast.UAdd() as op):
                 text = f"({SYMBOLS[type(op)]}{_primary(self._emit(node.operand, context, needed))})"
             case ast.IfExp():
-                parts = [self._emit(part, context, needed) for part in (node.body, node.orelse)]
+                parts = []
+                for truth, part in ((True, node.body), (False, node.orelse)):
+                    with self.where(node.test, truth):
+                        parts.append(self._emit(part, context, needed))
                 text = f"({self._root(node.test, None)} ? {' : '.join(parts)})"
             case ast.Call(args=[value, *_]) if _called(node) in (int, intbv) or _is_modbv(_called(node)):
                 return self._emit(value, context, needed)
@@ -645,7 +720,12 @@ class Expressions:
                     sides[1] = sides[1][1:-1]
                 return f"({sides[0]} {SYMBOLS[type(op)]} {sides[1]})"
             case ast.BoolOp():
-                return f"({f' {SYMBOLS[type(node.op)]} '.join(self._root(value, None) for value in node.values)})"
+                texts = []
+                with ExitStack() as before:
+                    for value in node.values:
+                        texts.append(self._root(value, None))
+                        before.enter_context(self.where(value, isinstance(node.op, ast.And)))
+                return f"({f' {SYMBOLS[type(node.op)]} '.join(texts)})"
             case ast.UnaryOp(op=ast.Not()):
                 text = self._root(node.operand, None)
                 return f"!{text}" if re.fullmatch(r"\w+", text) else f"(!{_primary(text)})"
@@ -829,6 +909,15 @@ def _chain(node: Any) -> Iterator[ast.expr]:
     while isinstance(node, (ast.Attribute, ast.Subscript)):
         node = node.value
         yield node
+
+
+def _changed(statement: ast.stmt) -> Iterator[str]:
+    """Yield the names of variables that a statement may change."""
+    for node in ast.walk(statement):
+        if isinstance(node, (ast.Name, ast.Subscript)) and isinstance(node.ctx, ast.Store):
+            yield from (part.id for part in _chain(node) if isinstance(part, ast.Name))
+        elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
+            yield from (part.id for part in node.value.args if isinstance(part, ast.Name))
 
 
 def _called(node: ast.expr) -> Any:

@@ -9,13 +9,13 @@ import functools
 import importlib
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, nullcontext
 from io import StringIO
 from typing import Any
 
 from myhdl import ConcatSignal, intbv
 from myhdl._block import _Block as Block
-from myhdl._enum import EnumItemType
+from myhdl._enum import EnumItemType, EnumType
 from myhdl._extractHierarchy import _getMemInfo, _isMem
 from myhdl._instance import _Instantiator as Process
 from myhdl._ShadowSignal import _ShadowSignal as ShadowSignal
@@ -24,7 +24,7 @@ from myhdl._ShadowSignal import _TristateDriver, _TristateSignal
 from myhdl._Signal import Constant, _PosedgeWaiterList
 from myhdl._Signal import _Signal as SignalType
 from myhdl._simulator import _signals as all_signals
-from myhdl.conversion._analyze import _analyzeGens, _Rom
+from myhdl.conversion import _analyze
 from myhdl.conversion._misc import _genUniqueSuffix, _kind
 from myhdl.conversion._toVerilog import _ConvertVisitor
 from myhdl.conversion._VHDLNameValidation import _vhdl_keywords as vhdl_keywords
@@ -103,11 +103,15 @@ def has_name(signal: Any) -> bool:
     return signal._name is not None
 
 
-def analysed(processes: Iterable[Process]) -> list[Any]:
+def analysed(processes: Iterable[Process], prepare: Callable[[Any], None]) -> list[Any]:
     """Return the syntax trees of processes, to which MyHDL has added the object of each name.
 
     Attributes of a tree: `sigdict` and `symdict`, signals and all values by name; `inputs` and `outputs`, names of
     signals; `outmems`, names of lists that are assigned; `vardict`, variables; `sourcefile` and `lineoffset`.
+
+    Args:
+        processes: the processes.
+        prepare: changes the tree of each process, and of each function that it calls, before MyHDL analyses it.
     """
     processes = list(processes)
     for process in processes:
@@ -117,47 +121,43 @@ def analysed(processes: Iterable[Process]) -> list[Any]:
         names = {id(process.symdict[name]): name for name in process.outputs if name in process.symdict}
         getattr(process, "sigregs", []).sort(key=lambda signal, names=names: names.get(id(signal), ""))
     _genUniqueSuffix.reset()
-    trees = _analyzeGens(processes, {id(process): process.name for process in processes})
-    for tree in trees:
+    before = _analyze._FirstPassVisitor
+
+    class _FirstPass(before):
+        def visit_Module(self, node: Any) -> None:
+            prepare(node)
+            self.generic_visit(node)
+
+    _analyze._FirstPassVisitor = _FirstPass
+    try:
+        trees = _analyze._analyzeGens(processes, {id(process): process.name for process in processes})
+    finally:
+        _analyze._FirstPassVisitor = before
+    for tree, process in zip(trees, processes, strict=True):
         _add_inputs(tree)
+        for name in process.outputs if getattr(tree, "reset", None) is not None else ():
+            signal = process.symdict[name]  # a reset sets it, even if nothing else ever does
+            tree.symdict[name] = signal
+            if isinstance(signal, SignalType):
+                tree.sigdict[name] = signal
+                tree.outputs.add(name)
+            elif isinstance(signal, list):
+                tree.outmems.add(name)
     return trees
 
 
 def _add_inputs(tree: Any) -> None:
-    """Add to what a process or a function reads, as MyHDL does not, the arguments of calls, and what functions read."""
-    calls: list[Any] = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and hasattr(node, "tree")]
-    for call in calls:
-        names = set().union(*map(_names, call.args))
+    """Add to what a process or a function reads what MyHDL leaves out: behind `len`, in calls, and in functions."""
+    nodes: list[Any] = [node for line in tree.body[0].body for node in ast.walk(line)]
+    driven = {id(_root(node.targets[0])) for node in nodes if isinstance(node, ast.Assign)}
+    tree.inputs |= {node.id for node in nodes if isinstance(node, ast.Name) and id(node) not in driven} & {
+        *tree.sigdict
+    }
+    for call in (node for node in nodes if hasattr(node, "tree")):
         _add_inputs(call.tree)
-        tree.inputs |= names & {*tree.sigdict}
         for name in signals_read_around(call.tree):
             tree.inputs.add(name)
             tree.sigdict.setdefault(name, call.tree.symdict[name])
-
-
-def check_statements(process: Process) -> None:
-    """Refuse what MyHDL's analysis would misunderstand.
-
-    Raises:
-        SyntaxError: with the place of the first such thing.
-    """
-    tree = process.ast
-    for node in ast.walk(tree):
-        text = f"Verilog has no {ast.unparse(node).partition(chr(10))[0]}; write it otherwise"
-        at: Any = node.targets[0] if isinstance(node, ast.Assign) else getattr(node, "target", None)
-        while isinstance(at, (ast.Attribute, ast.Subscript)):
-            at = at.value
-        if isinstance(node, (ast.Assign, ast.AugAssign)) and not isinstance(at, ast.Name):
-            text = f"Verilog has no assignment to {ast.unparse(at)}; assign to one signal or variable at a time"
-        elif isinstance(node, ast.ListComp):
-            text = (
-                f"a process has no list of its own in Verilog; make {ast.unparse(node)} a list of signals outside of it"
-            )
-        elif isinstance(node, ast.MatchSingleton):
-            text = f"a signal never is {node.value}, even if it equals it; write case 1 and case 0"
-        elif not isinstance(node, (ast.AnnAssign, ast.NamedExpr, ast.With, ast.Delete)):
-            continue
-        raise SyntaxError(text, (tree.sourcefile, tree.lineoffset + getattr(node, "lineno", 1), 0, ""))
 
 
 def assigned(tree: Any) -> bool:
@@ -218,7 +218,7 @@ def is_memory(known: Any) -> str | None:
 
 def table_of(known: Any) -> tuple[int, ...] | None:
     """Return the numbers of a tuple that a process indexes, None for anything else."""
-    return known.rom if isinstance(known, _Rom) else None
+    return known.rom if isinstance(known, _analyze._Rom) else None
 
 
 def state_of(tree: Any) -> dict[str, int]:
@@ -356,7 +356,7 @@ class Statements(_ConvertVisitor):
                                          f"{name}[:] first, or use a signal and a clock")  # fmt: skip
         always, _ = self._always(process.body)
         for node in (node for node in ast.walk(process) if isinstance(node, ast.Assign) and _is_next(node.targets[0])):
-            name = _root(node.targets[0])
+            name = _root(node.targets[0]).id
             width = len(self.tree.symdict[name])
             words = written_words(self.tree, name)
             own = (1 << width) - 1 if None in words or not words else sum(1 << (word or 0) for word in {*words})
@@ -377,21 +377,20 @@ class Statements(_ConvertVisitor):
         for node in body:
             every: list[tuple[dict[str, int], bool]] = []
             if isinstance(node, ast.Assign) and _is_next(node.targets[0]):
-                target, name = node.targets[0], _root(node.targets[0])
+                target, name = node.targets[0], _root(node.targets[0]).id
                 in_word = isinstance(target, ast.Subscript) and isinstance(self.tree.symdict[name], list)
                 bits = None if in_word else self._expressions.part(target)
                 every = [({name: 0 if bits is None else (1 << bits[1]) - (1 << bits[0])}, False)]
             elif isinstance(node, ast.For):
                 every = [({}, False)]
-                for value in range(*self._expressions.loop(node)):
+                for value in self._expressions.numbers(node):
                     with self._expressions.assuming({ast.unparse(node.target): value}):
                         one, skips = self._always(node.body)
                     every[0][0].update({name: mask | every[0][0].get(name, 0) for name, mask in one.items()})
                     if skips and any(isinstance(part, ast.Break) for part in ast.walk(node)):
                         break
             elif isinstance(node, ast.If) and not getattr(node, "ignore", False):
-                every = [self._always(branch) for branch in _branches(node, False)]
-                every += [({}, False)] * (not _branches(node))
+                every = [self._always(branch) for branch in self._reached(node)]
             elif isinstance(node, ast.Match):
                 every = [self._always(case.body) for case in node.cases]
                 every += [({}, False)] * (not self._is_full(node))
@@ -403,6 +402,17 @@ class Statements(_ConvertVisitor):
             if any(skips for _, skips in every):
                 return found, True
         return found, False
+
+    def _reached(self, node: Any) -> Iterator[Any]:
+        """Yield the branches of an `if` that may run."""
+        for test, branch in node.tests:
+            decided = self._expressions.constant(test)
+            if decided is None or decided:
+                yield branch
+            if decided:
+                return
+        if node.else_ or not node.isFullCase:
+            yield node.else_
 
     def _lines(self, *lines: str) -> None:
         for line in lines:
@@ -475,12 +485,14 @@ class Statements(_ConvertVisitor):
     def visit_For(self, node: Any) -> None:
         name, (start, stop, step) = node.target.id, self._expressions.loop(node)
         going, change = ("<", "+") if step > 0 else (">=", "-")
-        end = stop if step > 0 else stop + 1
+        if step < 0:
+            stop = ast.copy_location(ast.BinOp(stop, ast.Add(), ast.Constant(1)), node)
         flags = dict(self._flags(node))
         if ast.Break in flags:
             self.write(f"{flags[ast.Break]} = 1;")
             self.writeline()
-        self.write(f"for ({name}={start}; {name}{going}{end}; {name}={name}{change}{abs(step)}) begin")
+        ends = [self._expressions.text(end) for end in (start, stop)]
+        self.write(f"for ({name}={ends[0]}; {name}{going}{ends[1]}; {name}={name}{change}{abs(step)}) begin")
         self.indent()
         self._loops.append(node)
         if ast.Continue in flags:
@@ -517,18 +529,39 @@ class Statements(_ConvertVisitor):
         names = {kind: f"{loop.target.id}_{text}" for kind, text in kinds.items() if kind in found}
         return [(kind, name + "_" * (name in self._names)) for kind, name in names.items()]
 
+    def mapToIf(self, node: Any, *_: Any) -> None:
+        with ExitStack() as before:
+            for place, (test, body) in enumerate(node.tests):
+                head = f"if ({self._expressions.text(test)}) begin"
+                self._lines(f"else {head}") if place else self.write(head)
+                with self._expressions.where(test, True, node):
+                    self._block(body)
+                before.enter_context(self._expressions.where(test, False, node))
+            if node.else_:
+                self._lines("else begin")
+                self._block(node.else_)
+
+    def _block(self, body: Any) -> None:
+        """Print statements up to their end."""
+        self.indent()
+        self.visit_stmt(body)
+        self.dedent()
+        self._lines("end")
+
     def mapToCase(self, node: Any, *_: Any) -> None:
-        cases = [(self._expressions.case(node.caseVar, test.case[1]), suite) for test, suite in node.tests]
+        where = self._expressions.where
+        cases = [(self._expressions.case(node.caseVar, test.case[1]), body, where(test, False, node))
+                 for test, body in node.tests]  # fmt: skip
         if node.else_:
-            cases.append(("default", node.else_))
+            cases.append(("default", node.else_, nullcontext()))
         elif node.isFullCase and self.tree.kind == _kind.ALWAYS_COMB:
-            cases[-1] = "default", cases[-1][1]  # a code that no state has would keep values
+            cases[-1] = "default", *cases[-1][1:]  # a code that no state has would keep values
         self._cases(node.caseVar, cases)
 
     def visit_Match(self, node: Any) -> None:
-        cases = [(self._pattern(node, case), case.body) for case in node.cases]
+        cases = [(self._pattern(node, case), case.body, nullcontext()) for case in node.cases]
         if self._is_full(node):
-            cases[-1] = "default", cases[-1][1]  # a code that no state has would keep values
+            cases[-1] = "default", *cases[-1][1:]  # a code that no state has would keep values
         self._cases(node.subject, cases)
 
     def _is_full(self, node: Any) -> bool:
@@ -549,15 +582,15 @@ class Statements(_ConvertVisitor):
             texts.append(self._expressions.case(node.subject, value))
         return ", ".join(texts)
 
-    def _cases(self, subject: Any, cases: Sequence[tuple[str, Any]]) -> None:
+    def _cases(self, subject: Any, cases: Sequence[tuple[str, Any, Any]]) -> None:
+        """Print cases: each one's value, its body, and the context of those that follow it."""
         self.write(f"case ({self._expressions.text(subject)})")
         self.indent()
-        for text, body in cases:
-            self._lines(f"{text}: begin")
-            self.indent()
-            self.visit_stmt(body)
-            self.dedent()
-            self._lines("end")
+        with ExitStack() as before:
+            for text, body, passed in cases:
+                self._lines(f"{text}: begin")
+                self._block(body)
+                before.enter_context(passed)
         self.dedent()
         self._lines("endcase")
 
@@ -610,20 +643,20 @@ def _names(node: ast.AST) -> set[str]:
     return {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
 
 
-def _root(target: Any) -> str:
+def _root(target: Any) -> ast.Name:
     """Return the name of what is assigned."""
     while not isinstance(target, ast.Name):
         target = target.value
-    return target.id
+    return target
 
 
 def always_assigned(body: Sequence[Any]) -> set[str]:
-    """Return the names that statements assign in any case."""
+    """Return the names that statements assign in any case; bits alone do not count."""
     found: set[str] = set()
     node: Any
     for node in body:
-        if isinstance(node, ast.Assign):
-            found.add(_root(node.targets[0]))
+        if isinstance(node, ast.Assign) and not isinstance(node.targets[0], ast.Subscript):
+            found.add(_root(node.targets[0]).id)
         elif isinstance(node, ast.For):
             found |= always_assigned(node.body)
         elif isinstance(node, ast.If) and (branches := _branches(node)):

@@ -24,6 +24,9 @@ from raycaster.hdl.records import Interface, Record
 from raycaster.hdl.signals import Signed, tied
 
 
+ON, OFF = True, False
+
+
 def bit(value=0):
     return Signal(bool(value))
 
@@ -287,11 +290,29 @@ class Expressions:
         if self.once_in(3):
             return self.expression(1).text
         one, other = self.comparison(1).text, (self.expression if self.once_in(40) else self.comparison)(0).text
+        if self.once_in(30):
+            return self.one_of(f"ON or {one}", f"OFF and {one}", f"not OFF and {one}")
         return one if self.once_in(2) else f"({one} {self.one_of('and', 'or')} {other})"
 
     def choice(self, depth: int) -> Value:
-        one, other = self.expression(depth), self.expression(depth)
-        return hull(f"({one.text} if {self.condition()} else {other.text})", one, other)
+        other = self.expression(depth)
+        with self.limited() as condition:
+            one = self.expression(depth)
+        return hull(f"({one.text} if {condition} else {other.text})", one, other)
+
+    @contextmanager
+    def limited(self) -> Iterator[str]:
+        """Draw a condition, and make a context of what is true under it."""
+        if not self.once_in(3):
+            yield self.condition()
+            return
+        name = self.named()
+        low = self.number(name.low, name.high)
+        with self.inner_scope():
+            kept = [value for value in self.scope.values if value.text != name.text]
+            less = Value(f"({name.text} - {low})" if low > 0 else name.text, min(low, 0), name.high - max(low, 0))
+            self.scope.values = [*kept, replace(name, low=low), less]
+            yield self.one_of(f"{name.text} >= {low}", f"{low - 1} < {name.text} <= {name.high}")
 
     def joined(self, depth: int) -> Value:
         known = [value for value in self.scope.values if value.bits and value.low >= 0]
@@ -374,7 +395,8 @@ class Block(Expressions):
             lines = [self.assigned(name, ranges, 1) for name in names]
             return [*lines, f"if {self.condition()}:", *inner(True)]
         if form == "if":
-            lines = [f"if {self.condition()}:", *inner()]
+            with self.limited() as condition:
+                lines = [f"if {condition}:", *inner()]
             lines += [f"elif {self.condition()}:", *inner()] if self.once_in(3) else []
             return lines + ([] if self.once_in(2 if holds else 20) else ["else:", *inner()])
         odd = [self.one_of(*ODD_STATEMENTS).format(self.expression(0).text)] if self.once_in(20) else []
@@ -411,8 +433,12 @@ class Block(Expressions):
         step = step if step.width < 30 else Value("1", 1, 1)
         add = f"    {name} += {step.text}" if self.once_in(2) else f"    {name} = {name} + {step.text}"
         leave = [f"    {self.one_of('break', 'continue')}"] if self.once_in(6) else []
-        self.scope.values.append(Value(name, min(0, times * step.low), max(0, times * step.high)))
-        return [f"{name} = 0", f"for {loop} in range({times}):", *tabbed([f"if {asked}:", add, *leave])]
+        lines, runs = [f"if {asked}:", add, *leave], times
+        if self.once_in(3):
+            bounds = self.one_of(f"{loop}", f"{loop}, {times}", f"{times}, {loop}, -1")
+            lines, runs = [f"for {self.name('j')} in range({bounds}):", *tabbed(lines)], times * times
+        self.scope.values.append(Value(name, min(0, runs * step.low), max(0, runs * step.high)))
+        return [f"{name} = 0", f"for {loop} in range({times}):", *tabbed(lines)]
 
     def task(self) -> list[str]:
         """Draw a variable, and the call of a function that changes it."""

@@ -169,8 +169,8 @@ def functions_with_results(clk, a, q, y, z, up, kept):
     return instances()
 
 
-@program(clk=1, a=4, only=4, around=4, gate=1, y=4, kept=4, late=4, held=4)
-def functions_and_latches_read_signals(clk, a, only, around, gate, y, kept, late, held):
+@program(clk=1, a=4, only=4, around=4, gate=1, y=4, kept=4, late=4, held=4, low=lambda: Signal(intbv(9)[4:]))
+def functions_and_latches_read_signals(clk, a, only, around, gate, y, kept, late, held, low):
     part = signed(6)
 
     def mixed(word):
@@ -195,6 +195,10 @@ def functions_and_latches_read_signals(clk, a, only, around, gate, y, kept, late
     def hold():
         if gate:
             held.next = a
+
+    @always(a)
+    def cut():
+        low.next[2:] = a[2:]
 
     return instances()
 
@@ -598,6 +602,100 @@ def a_loop_in_a_branch(a, s, y, z):
         z.next = a
         if s:
             z.next = 0
+
+    return instances()
+
+
+@program(clk=1, reset=reset_signal, a=4, y=4, z=4, kept=4)
+def branches_that_constants_decide(clk, reset, a, y, z, kept):
+    mode, wide, extra, unused = "plain", False, None, Signal(intbv(5)[4:])
+
+    def flipped(x):
+        if wide:
+            return x[9]
+        return x ^ 1
+
+    @always_comb
+    def choose():
+        if mode == "plain" and extra is None:
+            y.next = a
+        else:
+            y.next = extra
+        z.next = a[9] if wide else flipped(a)
+        if len(a) > 4 or (wide and a[7]):
+            z.next = a[6:2]
+
+    @always_seq(clk.posedge, reset=reset)
+    def keep():
+        if wide:
+            unused.next = a
+        elif a[0]:
+            kept.next = a ^ unused
+
+    return instances()
+
+
+@program(a=8, i=3, k=-4, y=8, n=8, found=1, half=4, top=1, some=2, last=4)
+def conditions_and_loops_bound_indices(a, i, k, y, n, found, half, top, some, last):
+    table, chosen = (3, 1, 4, 1), (1, 5)
+
+    @always_comb
+    def count():
+        total = 0
+        for row in range(8):
+            odd = 0
+            for column in range(row):
+                odd = odd + a[column + 1]
+            for column in range(7, row, -2):
+                odd = odd + a[column]
+            y.next[row] = odd % 2
+            if row > 0:
+                n.next[row - 1] = a[row - 1]
+            if row in chosen:
+                total = total + a[row]
+        n.next[7] = a[0]
+        some.next = total
+
+    @always_comb
+    def find():
+        place = 0
+        place = k + 1
+        if i == 0 or not i < 7:
+            found.next = a[0]
+        elif i == 6:
+            found.next = a[1]
+        elif i == 5:
+            found.next = a[2]
+        else:
+            found.next = a[i - 1]
+        half.next = (a - 3) >> 5 if 3 <= a < 128 else 0
+        top.next = k >= 0 and a[k]
+        last.next = 0
+        if place > 1:
+            last.next = table[place >> 2]
+
+    return instances()
+
+
+@program(clk=1, go=1, y=2)
+def a_state_in_all_cases(clk, go, y):
+    state = Signal(STATES.IDLE)
+
+    @always(clk.posedge)
+    def turn():
+        if state in (STATES.IDLE, STATES.DONE):
+            state.next = STATES.BUSY
+        elif go:
+            state.next = STATES.DONE
+
+    @always_comb
+    def look():
+        if state == STATES.IDLE:
+            y.next = 1
+        elif state == STATES.BUSY:
+            y.next = 2
+        elif state == STATES.DONE:
+            y.next = 3
 
     return instances()
 

@@ -56,7 +56,7 @@ def process(statements: str) -> str:
         *(
             (process(statements), reason)
             for statements, reason in (
-                ("result.next = a in (1, 2)", "Verilog has no in; write == or != for each value"),
+                ("result.next = a in range(1, 3)", "Verilog has no in; write == or != for each value"),
                 ("result.next = a is b", "Verilog has no a is b; decide it outside of the process"),
                 ("print(f'{a}')\nresult.next = a", "MyHDL does not convert f'{a}'; write it otherwise"),
                 ("if (n := a + 1) > 3:\n    result.next = n", "Verilog has no (n := (a + 1))"),
@@ -102,7 +102,7 @@ def process(statements: str) -> str:
                 ("result.next = 0\nresult.next[2:] = index - 1", "MyHDL changes higher bits too if the value is"),
                 ("m = [intbv(0)[4:] for _ in range(4)]\nresult.next = m[index]", "a process has no list of its own"),
                 ("n = a.val\nresult.next = n", "n would be a.val itself in Python; write n[:] = a.val"),
-                ("len(a)\nresult.next = a", "len(a) changes nothing; assign it to something, or remove it"),
+                ("result == a\nresult.next = a", "result == a changes nothing; assign it to something, or remove it"),
                 ("concat(result, result).next = a", "Verilog has no assignment to concat(result, result)"),
                 ("result.next = a[1:3]", "these bounds enclose no bits"),
                 ("result.next = a[-1:]", "these bounds enclose no bits"),
