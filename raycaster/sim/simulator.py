@@ -305,7 +305,6 @@ def build_model(
     flags: Sequence[str] = VERILATOR_FLAGS,
     defines: Mapping[str, int] | None = None,
     bench: Bench = MODULE_BENCH,
-    own_main: bool = True,
 ) -> Model:
     """Build a model of a design, or reuse it.
 
@@ -318,7 +317,6 @@ def build_model(
         flags: flags for Verilator.
         defines: macros in addition to those of the bench.
         bench: the test bench.
-        own_main: True if Verilator's model uses `_MAIN`, instead of cocotb's main program, which is slower.
 
     Raises:
         UserError: the simulator, or a library that it needs, is missing.
@@ -328,7 +326,7 @@ def build_model(
     design = verilog if verilog is not None else convert(configuration, build, system=bench.system)
     sources = [*design, *bench.sources]
     parameters = bench.parameters(configuration)
-    program = [_MAIN] if simulator == "verilator" and own_main else []
+    program = [_MAIN] if simulator == "verilator" else []
     defines = {**(defines or {}), **bench.defines(configuration), **({"MAIN_CLOCK": 1} if program else {})}
     # Verilator's model must be built for waveforms if the bench writes one; Icarus would record the whole frame.
     built_for_waves = waves or (bench.window and simulator == "verilator")

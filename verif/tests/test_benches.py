@@ -12,7 +12,6 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -24,8 +23,7 @@ from raycaster.convert.write import write_scene_system, write_system
 from raycaster.design.decide import configure
 from raycaster.rtl.engines import ENGINES, EXACT
 from raycaster.scene import load_scene
-from raycaster.sim.job import Job
-from raycaster.sim.simulator import SIMULATORS, SimulationError, build_model, convert, run_bench
+from raycaster.sim.simulator import SIMULATORS, SimulationError, convert
 from raycaster.verif.expected import check_cycles
 from raycaster.verif.seeds import seed
 
@@ -141,21 +139,6 @@ def test_cycles_that_cannot_be(engine, row, group, right):
     """The default design has 10 groups of at most 232 cycles, and 3,200 cycles per row; with lists both read 0."""
     with contextlib.nullcontext() if right else pytest.raises(AssertionError):
         check_cycles({"row": row, "group": group}, configure(engine=engine))
-
-
-def test_the_main_program_matches_cocotb(tmp_path: Path):
-    """Our main program and cocotb's main program give the same events and times in a frame without a wrong pixel."""
-    configuration = TINY["exact"]
-    events = []
-    for own_main in (True, False):
-        output = tmp_path / str(own_main)
-        job = Job(configuration, scene=str(SMALL_SCENE), output=str(output))
-        model = build_model(configuration, build=BUILD, own_main=own_main)
-        run_bench(model, "raycaster.verif.benches.events_bench", job, output)
-        events.append(json.loads((output / "events.json").read_text()))
-    ours, theirs = events
-    assert next((pair for pair in zip(ours, theirs, strict=False) if pair[0] != pair[1]), None) is None
-    assert len(ours) == len(theirs) > 10 * configuration.screen_geometry.vertical.total
 
 
 @pytest.mark.slow_sets(quick=["axi4lite-icarus-exact", "wishbone-icarus-exact"])

@@ -15,15 +15,12 @@ from pathlib import Path
 import pytest
 from conftest import BUILD, ROOT, called, make
 
-from raycaster.convert import digest
 from raycaster.design.options import CommandParser
 from raycaster.docs import blocks, drawings, facts, pages, proofs, spans, tables, timing
 from raycaster.docs.hdl import parts
-from raycaster.docs.results import main as results
 from raycaster.golden.exact import ExactModel
 from raycaster.rtl import engine
 from raycaster.runs import outcomes
-from raycaster.runs.digests import uncommented
 
 EVERY_PAGE = "".join(page.read_text() for page in pages.PAGES)
 BLOCKS = re.findall(r"^```sh\n(.*?)^```", EVERY_PAGE, re.M | re.S)
@@ -129,25 +126,6 @@ def test_figures_are_kept(tmp_path: Path, monkeypatch):
     kept = outcomes.kept_outcome(path)
     assert (kept.command, kept.figures, kept.verilog) == ("raycaster area", {"cells": 3}, "12ab")
     assert kept.tools["myhdl"] == importlib.metadata.version("myhdl")
-
-
-@pytest.mark.slow
-def test_only_other_verilog_makes_a_figure_stale(monkeypatch, capsys):
-    """Comments in the Verilog do not count; a module of the exact engine is not in the span engine's Verilog."""
-    command = "raycaster verify soak --screen tiny --rectangles 1 --reflections 0 --engine "
-    monkeypatch.setattr(tables, "current_digest", tables.current_digest.__wrapped__)
-    monkeypatch.setattr(digest, "digest_of", digest.digest_of.__wrapped__)
-    exact, span = (f"{command}{name}" for name in ("exact", "span"))
-    now = {each: tables.current_digest(each) for each in (exact, span)}
-    kept = [outcomes.Outcome("one", each, "", "1234567", {}, verilog, "", {}) for each, verilog in now.items()]
-    monkeypatch.setattr("raycaster.docs.results.outcomes", lambda: kept)
-    begin = "module nearest_hit"
-    for new, state in ((f"// A comment.\n{begin}", "holds"), ("module nearest_of_all", "stale")):
-        monkeypatch.setattr(digest, "uncommented", lambda verilog, new=new: uncommented(verilog.replace(begin, new)))
-        results(["--stale"])
-        shown = " ".join(capsys.readouterr().out.split())
-        assert f"1234567 {state} {exact}" in shown and f"1234567 holds {span}" in shown
-    assert tables.current_digest(f"{command}gone") == ""
 
 
 def test_the_diagrams_match_the_design():

@@ -12,13 +12,11 @@ import pytest
 import z3
 from conftest import faulty, refused
 
-from raycaster.errors import UserError
 from raycaster.verif.formal.faults import model_with_faults, outcome
 from raycaster.verif.formal.lemmas import LEMMAS, Lemma, prove_lemma
 from raycaster.verif.formal.properties import PROPERTIES
 from raycaster.verif.formal.prove import main
 from raycaster.verif.formal.prover import Result, prove
-from raycaster.verif.formal.wrapper import completed, constants
 
 FAULTY = [proof for proof in PROPERTIES if proof.faults]
 """Properties with planted faults, each of a design that is proved quickly."""
@@ -47,56 +45,6 @@ def test_faults_in_the_hardware_are_found(proof, output, record_property):
     found = {fault: outcome(proof, output / "planted", fault, timeout=300) for fault in proof.faults}
     assert found == dict.fromkeys(proof.faults, "failed")
     record_property("planted", len(found))
-
-
-def test_a_fault_that_no_run_shows_is_not_found(output):
-    """No fault changes nothing, nor does one whose condition always holds: a host that waits has an access."""
-    harmless = replace(HOST, faults=(*HOST.faults, "avalon_host.waiting and access_select"))
-    model_with_faults(harmless, output / "planted")
-    for fault in ("", harmless.faults[-1]):
-        assert outcome(harmless, output / "planted", fault, timeout=60) == "passed"
-
-
-def test_a_place_that_does_not_exist_is_refused(output):
-    """A fault that the hardware no longer has a place for must not be lost."""
-    with pytest.raises(ValueError, match=r"avalon_host\.pausing 0: 'pausing'"):
-        model_with_faults(replace(HOST, faults=("avalon_host.pausing 0",)), output / "planted")
-
-
-def test_a_name_that_the_hardware_does_not_have_is_refused(output, monkeypatch):
-    """Otherwise the property would read an arbitrary value."""
-    text = faulty(HOST.text, "(host.waiting ==", "(host.pausing ==")
-    monkeypatch.setattr("raycaster.verif.formal.prover.source", lambda name: text)
-    with pytest.raises(UserError, match=r"host\.pausing' is implicitly declared"):
-        prove(HOST, output / "proof")
-
-
-INNER = """module inner (
-    input  wire       clk,
-    // [3:2] high, [1:0] low.
-    input  wire [3:0] pair_word,
-    output wire       same
-);
-reg signed [1:0] kept;
-endmodule
-"""
-
-
-def test_declarations_follow_from_the_modules():
-    """A property may use ports, fields of records, names inside an instance, and facts."""
-    body = "inner dut (.*);\nalways @* assert (same == (pair_high == LIMIT) && dut.kept == 0);\nendmodule\n"
-    text = f"module claim;\n{body}"
-    assert constants(text, "claim") == ["LIMIT"]
-    assert (
-        completed(text, "claim", ["inner"], {"inner.v": INNER}, {"LIMIT": 2})
-        == f"""`default_nettype none
-module claim (input clk, input [3:0] pair_word);
-localparam LIMIT = 2;
-wire same;
-wire [1:0] pair_high = pair_word[3:2];
-(* hierconn *) wire signed [1:0] \\dut.kept ;
-{body}"""
-    )
 
 
 def test_every_proof_has_a_fault():

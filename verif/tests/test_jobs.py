@@ -20,8 +20,6 @@ from rich.console import Console
 
 from raycaster.errors import UserError
 from raycaster.runs.jobs import Kept, executors, processes, run_jobs
-from raycaster.verif import everything
-from raycaster.verif.seeds import VARIABLE
 
 
 @dataclass(frozen=True)
@@ -101,36 +99,3 @@ def test_a_scheduler_that_does_not_answer(tmp_path):
     done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert re.fullmatch(r"error: scheduler: no Dask scheduler answers at nowhere.*\n", done.stderr)
-
-
-TESTS = """
-import os, pathlib, pytest
-@pytest.mark.parametrize("number", range(2))
-def test_quick(number):
-    pathlib.Path(os.environ["RAN"]).open("a").write(f"{number} ")
-def test_mended():
-    assert (pathlib.Path(os.environ["RAN"]).parent / "mended").exists()
-"""
-
-
-@pytest.mark.slow
-def test_all_is_resumed(tmp_path, monkeypatch, capsys):
-    """Tests that passed run again only after a commit, or with another seed."""
-    clone, ran = tmp_path / "clone", tmp_path / "ran"
-    (clone / "verif" / "tests").mkdir(parents=True)
-    (clone / "verif" / "tests" / "test_small.py").write_text(TESTS)
-    (clone / ".gitignore").write_text("build\n__pycache__\n.pytest_cache\n")
-    git = ["git", "-C", str(clone), "-c", "user.name=n", "-c", "user.email=e"]
-    for words in (["init", "-q"], ["add", "."], ["commit", "-qm", "first"]):
-        subprocess.run([*git, *words], check=True)
-    monkeypatch.setattr(everything.ensure_tools, "ensure", lambda tool: None)
-    monkeypatch.setattr(everything, "TESTS", clone / "verif" / "tests")
-    monkeypatch.delenv(VARIABLE, raising=False)
-    monkeypatch.setenv("RAN", str(ran))
-    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # each run starts quickly with the one that it needs
-    monkeypatch.setenv("PYTEST_PLUGINS", "xdist.plugin")
-    assert everything.main(["--seed", "5"]) == 1
-    (tmp_path / "mended").touch()
-    assert (everything.main([]), sorted(ran.read_text().split())) == (0, ["0", "1"])
-    assert "seed 5, of the unfinished run" in capsys.readouterr().out
-    assert (everything.main(["--seed", "5"]), sorted(ran.read_text().split())) == (0, ["0", "0", "1", "1"])
