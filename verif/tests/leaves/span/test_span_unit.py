@@ -43,15 +43,17 @@ SCENES = {name: load_scene(path) for name, path in sorted(packaged_scenes().item
 
 
 def unit_bench(leaf_of, config: Configuration):
-    """Make the bench of a unit."""
+    """Make the bench of a unit, with the screen of its design."""
     ports = {"number": index_bits(config), "stored": lambda: Rect(config), "usable": config.rectangles}
-    return leaf_of(frame_bench, config, run=lambda: Run(config), **ports)
+    leaf = leaf_of(frame_bench, config, run=lambda: Run(config), **ports)
+    leaf.screen = config.screen_geometry
+    return leaf
 
 
 def drawn(
     leaf, frames: Sequence[Frame], ready=lambda: 1, most: int | None = None, cuts: Sequence[int] = ()
-) -> Iterator[list[Row]]:
-    """Simulate frames, in Verilog with unknown values at power-up, and yield the rows of each.
+) -> Iterator[tuple[list[Row], list[Row]]]:
+    """Simulate frames, in Verilog with unknown values at power-up; yield the rows of each, and those of the model.
 
     Args:
         leaf: the bench.
@@ -79,7 +81,7 @@ def drawn(
     for cycle, inputs in enumerate(given):
         held |= inputs
         outputs[cycle]["ready"] = held["run_ready"]
-    for begin in begins:
+    for begin, wanted in zip(begins, expected, strict=True):
         rows, row, start = [], Row(), begin
         for cycle in range(begin, len(outputs)):
             seen = outputs[cycle]
@@ -92,14 +94,13 @@ def drawn(
                 assert None not in (seen["run_end"], seen["run_colour"]), f"cycle {cycle}: unknown"
                 row.runs.append((seen["run_end"], tuple(seen["run_colour"].to_bytes(3))))
                 row.taken.append(cycle - start)
-        yield rows
+        yield rows, wanted
 
 
 def check_frames(leaf, frames: Sequence[Frame], most: int | None = None) -> None:
     """Compare frames, or some of their rows, with the picture of the golden model and with the span model."""
     screen = leaf.screen
-    for frame, rows in zip(frames, drawn(leaf, frames, most=most), strict=True):
-        wanted = list(islice(frame.model(screen).rows(screen, frame.basis), most))
+    for frame, (rows, wanted) in zip(frames, drawn(leaf, frames, most=most), strict=True):
         for number, (row, expected) in enumerate(zip(rows, wanted, strict=False)):
             assert (row.runs, row.cycles) == (expected.runs, expected.cycles), f"row {number}"
             assert row.taken == expected.taken, f"row {number}"
@@ -115,7 +116,6 @@ def check_frames(leaf, frames: Sequence[Frame], most: int | None = None) -> None
 def test_span_unit(config, leaf_of, random):
     """Random, cornered and stiff worlds."""
     leaf = unit_bench(leaf_of, config)
-    leaf.screen = config.screen_geometry
     check_frames(leaf, [any_frame(random, config) for _ in range(QUICK if leaf.few else 8)])
 
 
@@ -124,7 +124,6 @@ def test_a_hundred_rectangles(reflections, leaf_of, random):
     """Worlds of 100 rectangles in the largest table, of which some are at its end."""
     config = span_config(screen="tiny", rectangles=MOST_RECTANGLES, reflections=reflections)
     leaf = unit_bench(leaf_of, config)
-    leaf.screen = config.screen_geometry
     frames = [any_frame(random, config, 100) for _ in range(1 if leaf.few else 6)]
     check_frames(
         leaf, [replace(frame, table=spread(random, frame.table)) for frame in frames], most=2 if leaf.few else None
@@ -147,7 +146,6 @@ WIDEST = span_config(rows=180, scale=6, rectangles=12, reflections=4, **dict.fro
 def test_full_hd(leaf_of, random):
     """The first rows of 1920 columns, with the greatest widths."""
     leaf = unit_bench(leaf_of, WIDEST)
-    leaf.screen = WIDEST.screen_geometry
     check_frames(leaf, [any_frame(random, WIDEST) for _ in range(4 if leaf.few else 30)], most=2)
 
 
@@ -167,7 +165,6 @@ def test_packaged_scenes(name, leaf_of):
     looks = {look: True for look in FEATURES if scene.lacks({*FEATURES} - {look})}
     config = span_config(screen="tiny", rectangles=max(12, len(scene.rect)), reflections=scene.reflections, **looks)
     leaf = unit_bench(leaf_of, config)
-    leaf.screen = config.screen_geometry
     check_frames(leaf, [scene_frame(scene)])
 
 
@@ -175,25 +172,18 @@ def test_a_reset_ends_a_row(leaf_of, random):
     """After a reset in any cycle, a frame is drawn as ever."""
     config = DESIGNS[-1]
     leaf = unit_bench(leaf_of, config)
-    leaf.screen = config.screen_geometry
     for _ in range(2 if leaf.few else 12):
         frame = any_frame(random, config)
-        [rows] = drawn(leaf, [frame], most=2, cuts=random.integers(300, size=12).tolist())
-        assert rows == [
-            replace(row, steps=Row().steps)
-            for row in islice(frame.model(leaf.screen).rows(leaf.screen, frame.basis), 2)
-        ]
+        [(rows, wanted)] = drawn(leaf, [frame], most=2, cuts=random.integers(300, size=12).tolist())
+        assert rows == [replace(row, steps=Row().steps) for row in wanted]
 
 
 def test_runs_wait(leaf_of, random):
     """A list that is not always ready gets the same runs."""
     config = DESIGNS[1]
     leaf = unit_bench(leaf_of, config)
-    leaf.screen = config.screen_geometry
-    frames = [any_frame(random, config)]
-    for frame, rows in zip(frames, drawn(leaf, frames, lambda: int(random.random() < 0.3)), strict=True):
-        wanted = frame.model(leaf.screen).rows(leaf.screen, frame.basis)
-        assert [row.runs for row in rows] == [row.runs for row in wanted]
+    [(rows, wanted)] = drawn(leaf, [any_frame(random, config)], lambda: int(random.random() < 0.3))
+    assert [row.runs for row in rows] == [row.runs for row in wanted]
 
 
 FAULTS = [
@@ -227,7 +217,6 @@ FAULTS = [
 def test_a_planted_fault_is_noticed(module, right, wrong, leaf_of, random):
     config = DESIGNS[-1]
     leaf = unit_bench(leaf_of, config)
-    leaf.screen = config.screen_geometry
     [path] = [path for path in leaf.verilog if path.stem == module]
     plant(path, right, wrong)
     with pytest.raises(AssertionError):
@@ -238,7 +227,6 @@ def test_a_planted_fault_is_noticed(module, right, wrong, leaf_of, random):
 def test_an_empty_table_shows_the_background(leaf_of, random):
     config = DESIGNS[-1]
     leaf = unit_bench(leaf_of, config)
-    leaf.screen = config.screen_geometry
     frame = any_frame(random, config)
     table = replace(frame.table, enabled=np.zeros(len(frame.table), dtype=bool))
     check_frames(leaf, [replace(frame, table=table)], most=3)
