@@ -39,7 +39,7 @@ class Choice(Options):
 
     engine: EngineName = Field(
         next(iter(ENGINES)),
-        description=f"engine that computes the rays: {listed(ENGINES)}; by default exact for a scene that needs it",
+        description=f"engine that computes the rays: {listed(ENGINES)}; by default the first that draws the scene",
     )
 
 
