@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The timing of the monitor, which drives the whole design."""
 
-from myhdl import Signal, always_comb, always_seq, block, instances, intbv
+from myhdl import Signal, always, always_comb, always_seq, block, instances, intbv
 
 from raycaster.hdl.signals import bit, bits_for, tied, unsigned
 from raycaster.rtl.video.pixel_clock import pixel_clock
@@ -41,6 +41,8 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0,
     hsync_active, vsync_active = horizontal.active_high, vertical.active_high
     last_repeat = doubling - 1
     announced = 0 if at_start else last_repeat
+    screen_first = first_line == -doubling
+    line_before_screen = last_line if screen_first else -doubling - 1
     single = screen.clocks_per_pixel == 1
     first_ahead, end_ahead = (-lead, horizontal.visible - lead) if single else (0, horizontal.visible)
     one_clock, to_line_end = tied(single, 1), tied(end_ahead == horizontal.visible, 1)
@@ -100,10 +102,17 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0,
 
     @always_comb
     def announce():
-        scan.start_screen.next = line_start and (y == -doubling)
         scan.start_row.next = line_start and (y >= 0) and (line_repeat == 0)
         scan.visible_line.next = in_columns
         scan.next_column.next = pixel_end and in_columns and (pixel_repeat == announced)
+
+    # A register, since the whole scene changes with it.
+    @always(clk.posedge)
+    def announce_screen():
+        if reset:
+            scan.start_screen.next = screen_first
+        else:
+            scan.start_screen.next = line_end and (y == line_before_screen)
 
     @always_seq(clk.posedge, reset=reset)
     def synchronise():
