@@ -290,7 +290,8 @@ class Contents:
         """Find the name of each signal: its variable, its place in a list or an interface, or a field of its record."""
         known: dict[int, str] = {}
         for name, signal in self.block.sigdict.items():
-            known.setdefault(id(signal), name)
+            if not name.startswith("_"):
+                known.setdefault(id(signal), name)
         first = {number: place for place, number in enumerate(dict.fromkeys([*known, *self._touched]))}
         scope: dict[str, Any] = {}
         for sub in self.block.subs:

@@ -180,6 +180,12 @@ def is_combinational(tree: Any) -> bool:
 TRISTATE = (_TristateSignal, _TristateDriver)
 
 
+def adopted(process: Process) -> Process:
+    """Return a process that a function made, as one of the block that calls the function; MyHDL would refuse it."""
+    process.modctxt = True
+    return process
+
+
 def drivers_of(process: Process) -> Iterator[Any]:
     """Yield the signals and lists of signals that a process drives."""
     for name in process.outputs:

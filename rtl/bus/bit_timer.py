@@ -4,6 +4,7 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.hdl.signals import bits_for, tied, unsigned
+from raycaster.hdl.verbs import plus
 
 FRACTION = 8
 """Bits of a clock period's share of a bit, at least: the rate is right within 0.2 per cent."""
@@ -29,11 +30,8 @@ def bit_timer(clk, restart, tick, clock_hz: int, baud: int, middle: bool):
     whole = 1 << bits
     share = tied(round(whole * baud / clock_hz), bits)
     first = tied(whole // 2 + round(whole * baud / clock_hz) if middle else 0, bits)
-    phase, advanced = unsigned(bits), unsigned(bits + 1)
-
-    @always_comb
-    def advance():
-        advanced.next = phase + share
+    phase = unsigned(bits)
+    advanced, advance = plus(phase, share, bits + 1)
 
     @always_comb
     def overflow():

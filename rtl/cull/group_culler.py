@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit, signed, tied, unsigned
+from raycaster.hdl.verbs import times
 from raycaster.rtl.common.interfaces import Place, Rects, Vector
 from raycaster.rtl.common.records import Facet, Walk, WideRect
 from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, wide_walk_bits
@@ -44,7 +45,7 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
 
     first_group, rects_known, start_sweep = bit(), bit(), bit()
     next_place = Place(config)
-    first_column = unsigned(config.screen_geometry.columns.bit_length())
+    first_column, scale_offset = times(next_place.column_offset, units, config.screen_geometry.columns.bit_length())
     column_slope, row_slope = signed(slope_bits), signed(slope_bits)
     slope = Vector(
         slope_bits, x=tied(config.screen_geometry.view_distance, Signed(slope_bits)), y=column_slope, z=row_slope
@@ -88,10 +89,6 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
             else:
                 next_place.row.next = place.row
                 next_place.column_offset.next = place.column_offset + 1
-
-    @always_comb
-    def scale_offset():
-        first_column.next = next_place.column_offset * units
 
     @always(clk.posedge)
     def aim():

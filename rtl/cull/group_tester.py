@@ -4,7 +4,8 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import Signed, bit, signed, unsigned
+from raycaster.hdl.verbs import plus, times
 
 
 @block
@@ -29,9 +30,17 @@ def group_tester(clk, load, facet, growth, start, column_slope, row_slope, may_h
     """
     walk_bits, units = len(start.way_p), config.units
 
-    reach_way_p, reach_low_p, reach_high_p, reach_low_q, reach_high_q = (signed(walk_bits) for _ in range(5))
-    end_way_p, end_low_p, end_high_p, end_low_q, end_high_q = (signed(walk_bits) for _ in range(5))
-    end_slope = signed(len(column_slope) + 1)
+    reach_way_p, stretch_way_p = times(growth.way_p, units, Signed(walk_bits))
+    reach_low_p, stretch_low_p = times(growth.low_p, units, Signed(walk_bits))
+    reach_high_p, stretch_high_p = times(growth.high_p, units, Signed(walk_bits))
+    reach_low_q, stretch_low_q = times(growth.low_q, units, Signed(walk_bits))
+    reach_high_q, stretch_high_q = times(growth.high_q, units, Signed(walk_bits))
+    end_way_p, walk_way_p = plus(start.way_p, reach_way_p, Signed(walk_bits))
+    end_low_p, walk_low_p = plus(start.low_p, reach_low_p, Signed(walk_bits))
+    end_high_p, walk_high_p = plus(start.high_p, reach_high_p, Signed(walk_bits))
+    end_low_q, walk_low_q = plus(start.low_q, reach_low_q, Signed(walk_bits))
+    end_high_q, walk_high_q = plus(start.high_q, reach_high_q, Signed(walk_bits))
+    end_slope, stretch_slope = plus(column_slope, units, Signed(len(column_slope) + 1))
     back, end_back = bit(), bit()
     behind = bit()
     least_p, most_p, least_q, most_q = (signed(walk_bits) for _ in range(4))
@@ -44,23 +53,6 @@ def group_tester(clk, load, facet, growth, start, column_slope, row_slope, may_h
     way_q_1 = signed(len(facet.way_q))
     end_least_p, end_most_p, end_least_q, end_most_q = (signed(walk_bits) for _ in range(4))
     one_may_hit = bit()
-
-    @always_comb
-    def stretch():
-        reach_way_p.next = growth.way_p * units
-        reach_low_p.next = growth.low_p * units
-        reach_high_p.next = growth.high_p * units
-        reach_low_q.next = growth.low_q * units
-        reach_high_q.next = growth.high_q * units
-        end_slope.next = column_slope + units
-
-    @always_comb
-    def walk():
-        end_way_p.next = start.way_p + reach_way_p
-        end_low_p.next = start.low_p + reach_low_p
-        end_high_p.next = start.high_p + reach_high_p
-        end_low_q.next = start.low_q + reach_low_q
-        end_high_q.next = start.high_q + reach_high_q
 
     @always_comb
     def look_ahead():

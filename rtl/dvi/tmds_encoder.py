@@ -3,7 +3,8 @@
 
 from myhdl import always_comb, always_seq, block, concat, instances
 
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import Signed, bit, signed, unsigned
+from raycaster.hdl.verbs import plus
 from raycaster.rtl.dvi.ones_count import ones_count
 
 SYMBOL_BITS = 10
@@ -36,7 +37,9 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
     low_bits = word(8, 0)
     word_control = unsigned(2)
     excess, sent_excess, flags = signed(4), signed(4), signed(2)
-    disparity, sent, next_disparity = (signed(DISPARITY_BITS) for _ in range(3))
+    disparity = signed(DISPARITY_BITS)
+    sent, add_bits = plus(disparity, sent_excess, Signed(DISPARITY_BITS))
+    next_disparity, add_flags = plus(sent, flags, Signed(DISPARITY_BITS))
 
     data_count = ones_count(data, ones)
     word_count = ones_count(low_bits, word_ones)
@@ -94,14 +97,6 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
             flags.next = 1
         elif not word[8] and not invert:
             flags.next = -1
-
-    @always_comb
-    def add_bits():
-        sent.next = disparity + sent_excess
-
-    @always_comb
-    def add_flags():
-        next_disparity.next = sent + flags
 
     @always_seq(clk.posedge, reset=None)
     def send():

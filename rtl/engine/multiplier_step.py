@@ -3,7 +3,8 @@
 
 from myhdl import always_comb, block, concat, instances
 
-from raycaster.hdl.signals import signed
+from raycaster.hdl.signals import Signed, signed
+from raycaster.hdl.verbs import minus, plus
 
 
 @block
@@ -22,7 +23,7 @@ def multiplier_step(multiplicand, total, digits, next_total, next_digits, subtra
     """
     width, count = len(total), len(digits)
     addend = signed(width)
-    added = signed(width + 1)
+    added, add = (minus if subtract else plus)(total, addend, Signed(width + 1))
 
     @always_comb
     def select():
@@ -30,18 +31,6 @@ def multiplier_step(multiplicand, total, digits, next_total, next_digits, subtra
             addend.next = multiplicand
         else:
             addend.next = 0
-
-    if subtract:
-
-        @always_comb
-        def add():
-            added.next = total - addend
-
-    else:
-
-        @always_comb
-        def add():
-            added.next = total + addend
 
     @always_comb
     def shift():

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The primary ray of a unit's column."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import Signed, unsigned
+from raycaster.hdl.verbs import less, minus, plus, times
 from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.widths import row_bits
 
@@ -33,32 +34,14 @@ def ray_generator(clk, steps, place, column_base, initial_signs, slope, config: 
     # One group past the last is legal: the counter stops there.
     column_width = (config.groups * units + units).bit_length()
 
-    group_start = unsigned(column_width)
-    column = unsigned(column_width)
-    dy = signed(max(column_width, slope_bits) + 1)
-    dz = signed(max(row_bits(config), slope_bits) + 1)
+    group_start, scale_offset = times(place.column_offset, units, column_width)
+    column, add_base = plus(group_start, column_base, column_width)
+    dy, centre = minus(column, centre_column, Signed(max(column_width, slope_bits) + 1))
+    dz, level = minus(horizon_row, place.row, Signed(max(row_bits(config), slope_bits) + 1))
+    (dy_negative, see_y), (dz_negative, see_z) = less(dy, 0), less(dz, 0)
     dy_magnitude, dz_magnitude = unsigned(slope_bits), unsigned(slope_bits)
-    dy_negative, dz_negative = bit(), bit()
     dy_size = magnitude(dy, dy_magnitude)
     dz_size = magnitude(dz, dz_magnitude)
-
-    @always_comb
-    def scale_offset():
-        group_start.next = place.column_offset * units
-
-    @always_comb
-    def add_base():
-        column.next = group_start + column_base
-
-    @always_comb
-    def centre():
-        dy.next = column - centre_column
-        dz.next = horizon_row - place.row
-
-    @always_comb
-    def take_signs():
-        dy_negative.next = dy < 0
-        dz_negative.next = dz < 0
 
     all_signs = initial_signs.joined(dx=False, dy=dy_negative, dz=dz_negative)
 

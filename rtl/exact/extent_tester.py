@@ -3,7 +3,8 @@
 
 from myhdl import always, always_comb, block, instances
 
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import Signed, bit, signed, unsigned
+from raycaster.hdl.verbs import minus, times
 
 
 @block
@@ -38,13 +39,17 @@ def extent_tester(
     lower, upper, near, far = (signed(coordinate_bits) for _ in range(4))
     flipped_eye = signed(len(eye))
     # One bit more than a signed distance needs: while signals settle, the operands may come from two rays.
-    to_near, to_far = signed(len(eye) + 1), signed(len(eye) + 1)
+    to_near, measure_near = minus(near, flipped_eye, Signed(len(eye) + 1))
+    to_far, measure_far = minus(far, flipped_eye, Signed(len(eye) + 1))
 
     # A number at the end of a name is the stage whose registers hold it.
     slope_1, to_near_1, to_far_1 = unsigned(slope_bits), unsigned(distance_bits), unsigned(distance_bits)
     passed_1, on_mirror_1, clips, behind = bit(), bit(), bit(), bit()
     first = unsigned(distance_bits)
-    way, way_to_near, way_to_far, way_2, way_to_near_2, way_to_far_2 = (unsigned(way_bits) for _ in range(6))
+    way, multiply = times(n, slope_1, way_bits)
+    way_to_near, multiply_near = times(first, e, way_bits)
+    way_to_far, multiply_far = times(to_far_1, e, way_bits)
+    way_2, way_to_near_2, way_to_far_2 = (unsigned(way_bits) for _ in range(3))
     behind_2, clips_2 = bit(), bit()
 
     @always_comb
@@ -61,11 +66,6 @@ def extent_tester(
             near.next = ~upper
             far.next = ~lower
             flipped_eye.next = ~eye
-
-    @always_comb
-    def measure():
-        to_near.next = near - flipped_eye
-        to_far.next = far - flipped_eye
 
     @always_comb
     def look_ahead():
@@ -91,12 +91,6 @@ def extent_tester(
         behind.next = passed_1 and not clips
         if clips:
             first.next = mirror_distance
-
-    @always_comb
-    def multiply():
-        way.next = n * slope_1
-        way_to_near.next = first * e
-        way_to_far.next = to_far_1 * e
 
     @always(clk.posedge)
     def stage_2():

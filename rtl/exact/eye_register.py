@@ -4,7 +4,8 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import Signed, bit, signed, unsigned
+from raycaster.hdl.verbs import minus
 from raycaster.rtl.common.by_axis import by_axis
 
 
@@ -37,7 +38,7 @@ def eye_register(
     twice = unsigned(COORDINATE_BITS + 1)
     twice_signed = signed(COORDINATE_BITS + 2)
     mirrored, image = signed(eye_bits), signed(eye_bits)
-    difference = signed(eye_bits + 1)
+    difference, reflect = minus(twice_signed, mirrored, Signed(eye_bits + 1))
 
     on_axis = by_axis(found_surface.axis, eye.x, eye.y, eye.z, mirrored, width=len(mirrored))
 
@@ -49,10 +50,6 @@ def eye_register(
     @always_comb
     def extend():
         twice_signed.next = twice
-
-    @always_comb
-    def reflect():
-        difference.next = twice_signed - mirrored
 
     # The image fits after every mirror except the last, after which it is don't care.
     @always_comb

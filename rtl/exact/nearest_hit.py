@@ -3,7 +3,8 @@
 
 from myhdl import always, always_comb, block, instances
 
-from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.signals import bit
+from raycaster.hdl.verbs import times
 
 
 @block
@@ -30,14 +31,10 @@ def nearest_hit(
         found_slope: unsigned output, as wide as denominator; the nearest hit's denominator.
         found_at_mirror: output flag; the nearest hit's at_mirror.
     """
-    numerator_bits, denominator_bits = len(numerator), len(denominator)
-    offered_product, nearest_product = (unsigned(numerator_bits + denominator_bits) for _ in range(2))
+    product_bits = len(numerator) + len(denominator)
+    offered_product, multiply_offered = times(numerator, found_slope, product_bits)
+    nearest_product, multiply_nearest = times(found_distance, denominator, product_bits)
     nearer = bit()
-
-    @always_comb
-    def multiply():
-        offered_product.next = numerator * found_slope
-        nearest_product.next = found_distance * denominator
 
     @always_comb
     def compare():

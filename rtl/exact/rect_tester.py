@@ -4,7 +4,8 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.hdl.records import Record
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import Signed, bit, signed, unsigned
+from raycaster.hdl.verbs import minus
 from raycaster.rtl.common.by_axis import along_a, along_u, along_v, by_axis
 from raycaster.rtl.exact.extent_tester import extent_tester
 
@@ -57,7 +58,7 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
     mirror_on_x, mirror_on_y, mirror_on_z, mirror_on_a, mirror_on_u, mirror_on_v = (bit() for _ in range(6))
     position, plane = signed(coordinate_bits), signed(coordinate_bits)
     # One bit more than a signed distance needs: while signals settle, the operands may come from two rays.
-    n = signed(eye_bits + 1)
+    n, measure = minus(plane, flipped_eye, Signed(eye_bits + 1))
     ahead_u, ahead_v, inside_u, inside_v, in_mirror_u, in_mirror_v = (bit() for _ in range(6))
     crosses, beyond, in_mirror = bit(), bit(), bit()
 
@@ -106,10 +107,6 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
         if back:
             plane.next = ~position
             flipped_eye.next = ~eye_a
-
-    @always_comb
-    def measure():
-        n.next = plane - flipped_eye
 
     # The plane is ahead of the eye and not parallel to the ray, and no far bound is behind the eye.
     @always_comb

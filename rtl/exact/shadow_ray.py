@@ -3,7 +3,8 @@
 
 from myhdl import always, always_comb, block, instances
 
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import Signed, bit, signed, unsigned
+from raycaster.hdl.verbs import minus
 from raycaster.rtl.common.by_axis import by_axis
 from raycaster.rtl.common.widths import AXIS_BITS
 from raycaster.rtl.exact.hit_component import hit_component
@@ -44,7 +45,8 @@ def shadow_ray(
     eye_q, light = signed(eye_bits), signed(eye_bits)
     light_q, light_a = (unsigned(len(camera.light_x)) for _ in range(2))
     slope_q, back_q, back_a = unsigned(slope_bits), bit(), bit()
-    difference, difference_1 = signed(eye_bits + 1), signed(eye_bits + 1)
+    difference, measure = minus(eye_q, light, Signed(eye_bits + 1))
+    difference_1 = signed(eye_bits + 1)
     slope_1, back_1 = unsigned(slope_bits), bit()
     aimed, sum_2, inverse, negated = (unsigned(sum_bits) for _ in range(4))
     back_2 = bit()
@@ -73,10 +75,6 @@ def shadow_ray(
     @always_comb
     def extend():
         light.next = light_q
-
-    @always_comb
-    def measure():
-        difference.next = eye_q - light
 
     @always(clk.posedge)
     def stage_1():

@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import times
 from raycaster.rtl.common.interfaces import AIM_CYCLES
 
 
@@ -30,7 +31,7 @@ def shadow_register(clk, steps, in_question, hit, numerator, denominator, found_
         shaded: output flag; there was a hit before P since steps.aim. Valid from the cycle after steps.write_shadow.
     """
     distance = unsigned(COORDINATE_BITS)
-    reached = unsigned(COORDINATE_BITS + len(found_slope))
+    reached, multiply = times(distance, found_slope, COORDINATE_BITS + len(found_slope))
     in_between = bit()
     last = AIM_CYCLES - 1
 
@@ -38,10 +39,6 @@ def shadow_register(clk, steps, in_question, hit, numerator, denominator, found_
     @always_comb
     def narrow():
         distance.next = numerator[COORDINATE_BITS:]
-
-    @always_comb
-    def multiply():
-        reached.next = distance * found_slope
 
     @always_comb
     def compare():

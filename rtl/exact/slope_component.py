@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """A slope component of a primary ray, for a camera that turns."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import Signed, signed, unsigned
+from raycaster.hdl.verbs import less, plus, times
 from raycaster.rtl.common.magnitude import magnitude
 
 
@@ -31,41 +32,23 @@ def slope_component(
     """
     view_distance = config.screen_geometry.view_distance
     # A group past the last one is legal, though nothing is loaded there: twice the steepest slope is more than enough.
-    bits = len(size) + 2
+    bits = Signed(len(size) + 2)
 
-    ahead, across, upward, aside = (signed(bits) for _ in range(4))
-    level, total, start, component = (signed(bits) for _ in range(4))
-    component_size = unsigned(len(size))
-    component_negative = bit()
+    ahead, go_ahead = times(forward, view_distance, bits)
+    across, go_across = times(right, column, bits)
+    upward, go_up = times(up, row, bits)
+    aside, go_aside = times(right, column_base, bits)
+    level, add_columns = plus(ahead, across, bits)
+    total, add_rows = plus(level, upward, bits)
+    start, component_size = signed(bits), unsigned(len(size))
+    component, add_aside = plus(start, aside, bits)
+    component_negative, take_sign = less(component, 0)
     absolute = magnitude(component, component_size)
-
-    @always_comb
-    def multiply():
-        ahead.next = forward * view_distance
-        across.next = right * column
-        upward.next = up * row
-        aside.next = right * column_base
-
-    @always_comb
-    def add_columns():
-        level.next = ahead + across
-
-    @always_comb
-    def add_rows():
-        total.next = level + upward
 
     # start is the same in all units, so synthesis keeps one of them.
     @always(clk.posedge)
     def keep_start():
         start.next = total
-
-    @always_comb
-    def go_aside():
-        component.next = start + aside
-
-    @always_comb
-    def take_sign():
-        component_negative.next = component < 0
 
     @always(clk.posedge)
     def load():

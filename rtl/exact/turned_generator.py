@@ -4,7 +4,8 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import Signed, bit
+from raycaster.hdl.verbs import minus, times
 from raycaster.rtl.common.widths import row_bits
 from raycaster.rtl.exact.slope_component import slope_component
 
@@ -33,9 +34,9 @@ def turned_generator(
     centre_column, horizon_row = screen.centre_column, screen.horizon_row
     column_width = (config.groups * units + units).bit_length()
 
-    group_start = unsigned(column_width)
-    column = signed(column_width + 1)
-    row = signed(row_bits(config) + 1)
+    group_start, scale_offset = times(place.column_offset, units, column_width)
+    column, centre = minus(group_start, centre_column, Signed(column_width + 1))
+    row, level = minus(horizon_row, place.row, Signed(row_bits(config) + 1))
     negative_x, negative_y, negative_z = bit(), bit(), bit()
 
     along_x = slope_component(
@@ -50,15 +51,6 @@ def turned_generator(
         clk=clk, steps=steps, forward=camera.forward_z, right=camera.right_z, up=camera.up_z, column=column, row=row,
         column_base=column_base, size=slope.dz, negative=negative_z, config=config,
     )  # fmt: skip
-
-    @always_comb
-    def scale_offset():
-        group_start.next = place.column_offset * units
-
-    @always_comb
-    def centre():
-        column.next = group_start - centre_column
-        row.next = horizon_row - place.row
 
     all_signs = initial_signs.joined(dx=negative_x, dy=negative_y, dz=negative_z)
 

@@ -5,7 +5,8 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.records import Record
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import Signed, bit, unsigned
+from raycaster.hdl.verbs import minus, plus
 from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.widths import SLOPE_BITS, position_bits, product_bits
 from raycaster.rtl.seed.divider import divider
@@ -52,12 +53,13 @@ def intersection_helper(
     position_width = position_bits(config)
     product_width = product_bits(config)
 
-    difference = signed(position_width + 1)
+    difference, subtract = minus(c, d, Signed(position_width + 1))
     away = unsigned(position_width)
     runs_towards, overflow = bit(), bit()
     started_b, started_e = unsigned(SLOPE_BITS), unsigned(SLOPE_BITS)
     product = unsigned(product_width)
-    forward, backward = signed(position_width + 2), signed(position_width + 2)
+    forward, step_forward = plus(a, quotient, Signed(position_width + 2))
+    backward, step_backward = minus(a, quotient, Signed(position_width + 2))
     # Flags and distance of the operands, of the division in progress and of the finished quotient.
     started, loaded, stored = (Record({"distance": position_width, "negative": 1, "towards": 1}) for _ in range(3))
 
@@ -66,10 +68,6 @@ def intersection_helper(
         clk=clk, load_divider=steps.load_divider, store_quotient=steps.store_quotient, dividend=product,
         divisor=started_e, quotient=quotient, overflow=overflow, config=config,
     )  # fmt: skip
-
-    @always_comb
-    def subtract():
-        difference.next = c - d
 
     @always_comb
     def look_towards():
@@ -98,11 +96,6 @@ def intersection_helper(
         towards.next = started.towards
         distance.next = stored.distance
         valid.next = stored.towards and not overflow
-
-    @always_comb
-    def step():
-        forward.next = a + quotient
-        backward.next = a - quotient
 
     @always(clk.posedge)
     def add():

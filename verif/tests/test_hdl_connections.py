@@ -11,7 +11,8 @@ from raycaster.hdl.hierarchy import Port
 from raycaster.hdl.internals import bits_of
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.records import Record
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import Signed, bit, signed, unsigned
+from raycaster.hdl.verbs import less, minus, plus, times
 from raycaster.sim.simulator import find_tool
 
 
@@ -108,3 +109,34 @@ def test_fields_and_parts_belong_to_the_word(made):
     places = {name: bits_of(getattr(found, name)) for name in ("high", "middle", "low")}
     assert places == {"high": (found.word, 7, 4), "middle": (found.word, 5, 2), "low": (found.word, 3, 0)}
     assert (len(found.none), int(found.none.val), int(found.absent.val)) == (1, 0, 0)
+
+
+@block
+def with_verbs(a, b, behind, product):
+    """Compute with verbs only, except for the outputs."""
+    total, add = plus(a, b, 5)
+    difference, subtract = minus(a, b, Signed(5))
+    tripled, multiply = times(total, 3, 7)
+    is_less, compare = less(difference, 0)
+
+    @always_comb
+    def show():
+        behind.next = is_less
+        product.next = tripled
+
+    return add, subtract, multiply, compare, show
+
+
+def test_verbs(tmp_path, random):
+    """A verb is an assignment to a signal with the name of the block's variable."""
+    arguments = {"a": lambda: unsigned(4), "b": lambda: unsigned(4), "behind": bit, "product": lambda: unsigned(7)}
+    leaf = Leaf(with_verbs, lambda: {name: made() for name, made in arguments.items()}, tmp_path)
+    stimulus = random_inputs(leaf, random, 50)
+    for inputs, outputs in zip(stimulus, leaf.run_both(stimulus), strict=True):
+        a, b = inputs["a"], inputs["b"]
+        assert outputs == {"behind": a < b, "product": 3 * (a + b)}
+    text = (tmp_path / "with_verbs.v").read_text()
+    assert re.findall(r"assign (.*);", text) == [
+        "total = a + b", "difference = a - b", "tripled = total * 3", "is_less = difference < 0",
+        "behind = is_less", "product = tripled",
+    ]  # fmt: skip

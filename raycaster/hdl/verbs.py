@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""Operators of MyHDL as functions that make the signal for their result: `total, add = plus(a, b, 9)`.
+
+Each returns a new signal and the process that drives it, an `assign` in Verilog. The operands are signals or integers.
+A block gives the signal a variable of its own, which is its name in Verilog; so names here begin with an underscore.
+"""
+
+from typing import Any
+
+from myhdl import Signal, always_comb
+
+from raycaster.hdl.internals import Process, SignalType, adopted
+from raycaster.hdl.signals import initial
+
+
+def plus(_a: Any, _b: Any, width: int) -> tuple[SignalType, Process]:
+    """Return _a + _b in a signal of this width, `Signed` for two's complement, and its process."""
+    _sum = Signal(initial(0, width))
+
+    @always_comb
+    def add():
+        _sum.next = _a + _b
+
+    return _sum, adopted(add)
+
+
+def minus(_a: Any, _b: Any, width: int) -> tuple[SignalType, Process]:
+    """Return _a - _b in a signal of this width, `Signed` for two's complement, and its process."""
+    _difference = Signal(initial(0, width))
+
+    @always_comb
+    def subtract():
+        _difference.next = _a - _b
+
+    return _difference, adopted(subtract)
+
+
+def times(_a: Any, _b: Any, width: int) -> tuple[SignalType, Process]:
+    """Return _a * _b in a signal of this width, `Signed` for two's complement, and its process."""
+    _product = Signal(initial(0, width))
+
+    @always_comb
+    def multiply():
+        _product.next = _a * _b
+
+    return _product, adopted(multiply)
+
+
+def less(_a: Any, _b: Any) -> tuple[SignalType, Process]:
+    """Return a flag that is high if _a < _b, and its process."""
+    _is_less = Signal(bool(0))
+
+    @always_comb
+    def compare():
+        _is_less.next = _a < _b
+
+    return _is_less, adopted(compare)
