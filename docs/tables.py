@@ -28,9 +28,9 @@ def _engines(kept: Outcome) -> str:
     unlike = sum(row["wrong_vs_golden"] for row in figures["designs"])
     return (
         f"{table(headings, rows)}\n\nWrong pixels differ from exact arithmetic, counted over {figures['scenes']} "
-        f"scenes; {unlike} pixels differ from the engine's own model. Cell counts are Yosys's for an ECP5, before "
-        f"placement. Each design holds {figures['rectangles']} rectangles; the seed engine has culling, the others do "
-        "not."
+        f"scenes; {unlike or 'no'} pixels differ from the engine's own model. Cell counts are Yosys's for an ECP5, "
+        f"before placement. Each design holds {figures['rectangles']} rectangles; the seed engine has culling, the "
+        "others do not."
     )
 
 
