@@ -5,7 +5,8 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.records import Record
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import Signed, bit, signed, unsigned
+from raycaster.hdl.verbs import minus, plus
 from raycaster.rtl.common.widths import AXIS_BITS, WIDE_BITS, index_bits
 
 
@@ -24,7 +25,10 @@ def rect_copy(clk, rects, copy, margin: int, config: Configuration):
     words = [unsigned(len(kept.word)) for _ in range(config.rectangles)]
     at_hand, number = bit(), unsigned(index_bits(config))
     u_low, u_high, v_low, v_high = (signed(COORDINATE_BITS + 1) for _ in range(4))
-    wide_u_low, wide_u_high, wide_v_low, wide_v_high = (signed(WIDE_BITS) for _ in range(4))
+    wide_u_low, widen_u_low = minus(u_low, margin, Signed(WIDE_BITS))
+    wide_u_high, widen_u_high = plus(u_high, margin, Signed(WIDE_BITS))
+    wide_v_low, widen_v_low = minus(v_low, margin, Signed(WIDE_BITS))
+    wide_v_high, widen_v_high = plus(v_high, margin, Signed(WIDE_BITS))
 
     @always(clk.posedge)
     def follow():
@@ -52,13 +56,6 @@ def rect_copy(clk, rects, copy, margin: int, config: Configuration):
         u_high.next = kept.u_high
         v_low.next = kept.v_low
         v_high.next = kept.v_high
-
-    @always_comb
-    def widen():
-        wide_u_low.next = u_low - margin
-        wide_u_high.next = u_high + margin
-        wide_v_low.next = v_low - margin
-        wide_v_high.next = v_high + margin
 
     wide = copy.rect.joined(
         axis=kept.axis, position=kept.position, u_low=wide_u_low, u_high=wide_u_high, v_low=wide_v_low,

@@ -4,7 +4,8 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
-from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.signals import Signed, bit, signed, unsigned
+from raycaster.hdl.verbs import minus
 from raycaster.rtl.common.by_axis import along_a, along_p, along_q, by_axis
 from raycaster.rtl.common.widths import AXIS_BITS, DISTANCE_BITS, exact_slope_bits, index_bits
 from raycaster.rtl.engine.array_multiplier import array_multiplier
@@ -48,11 +49,15 @@ def rect_setup(
     reading, asked, at_hand = bit(), bit(), bit()
     number = unsigned(index_bits(config))
     usable_0, usable = bit(), bit()
-    eye_a, plane, distance = (signed(DISTANCE_BITS) for _ in range(3))
+    eye_a, plane = signed(DISTANCE_BITS), signed(DISTANCE_BITS)
     eye_p, eye_q, low_p, high_p, low_q, high_q = (signed(bound_bits) for _ in range(6))
     camera_a, camera_p, camera_q = (unsigned(COORDINATE_BITS) for _ in range(3))
     slope_a, slope_p, slope_q = (signed(slope_bits) for _ in range(3))
-    to_low_p, to_high_p, to_low_q, to_high_q = (signed(bound_bits) for _ in range(4))
+    distance, measure = minus(plane, eye_a, Signed(DISTANCE_BITS))
+    to_low_p, measure_low_p = minus(low_p, eye_p, Signed(bound_bits))
+    to_high_p, measure_high_p = minus(high_p, eye_p, Signed(bound_bits))
+    to_low_q, measure_low_q = minus(low_q, eye_q, Signed(bound_bits))
+    to_high_q, measure_high_q = minus(high_q, eye_q, Signed(bound_bits))
 
     number_0, number_1, number_2 = (unsigned(index_bits(config)) for _ in range(3))
     at_hand_2, usable_2 = bit(), bit()
@@ -118,14 +123,6 @@ def rect_setup(
             high_p.next = rects.rect.u_high
             low_q.next = rects.rect.v_low
             high_q.next = rects.rect.v_high
-
-    @always_comb
-    def measure():
-        distance.next = plane - eye_a
-        to_low_p.next = low_p - eye_p
-        to_high_p.next = high_p - eye_p
-        to_low_q.next = low_q - eye_q
-        to_high_q.next = high_q - eye_q
 
     @always(clk.posedge)
     def hold_distances():

@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import unsigned
+from raycaster.hdl.verbs import plus
 from raycaster.rtl.common.widths import share_bits
 
 
@@ -33,7 +34,8 @@ def colour_share(clk, steps, found, found_mirror, share, missed, config: Configu
     weight, left = unsigned(bits), unsigned(bits)
 
     if config.materials:
-        half, quarter, some, passed_on = (unsigned(bits) for _ in range(4))
+        half, quarter, passed_on = (unsigned(bits) for _ in range(3))
+        some, add_parts = plus(half, quarter, bits)
 
         # A weight that is passed on is a multiple of 4: it has met fewer mirrors than there are reflections.
         @always_comb
@@ -44,10 +46,6 @@ def colour_share(clk, steps, found, found_mirror, share, missed, config: Configu
                 half.next = weight >> 1
             if found_mirror[0]:
                 quarter.next = weight >> 2
-
-        @always_comb
-        def add_parts():
-            some.next = half + quarter
 
         # The last ray passes nothing on: it stores no reflected ray.
         @always_comb

@@ -3,7 +3,8 @@
 
 from myhdl import always_comb, block, concat, instances
 
-from raycaster.hdl.signals import signed, unsigned
+from raycaster.hdl.signals import Signed, signed, unsigned
+from raycaster.hdl.verbs import times
 
 
 @block
@@ -21,19 +22,15 @@ def hit_component(eye, back, slope, distance, e, component):
     slope_bits, bits = len(e), len(component)
 
     divisor = signed(slope_bits + 1)
-    position = signed(len(eye) + slope_bits + 1)
+    position, multiply = times(eye, divisor, Signed(len(eye) + slope_bits + 1))
     way_bits = max(len(distance) + slope_bits, bits)
-    way, flipped_way = unsigned(way_bits), unsigned(way_bits)
+    way, multiply_way = times(distance, slope, way_bits)
+    flipped_way = unsigned(way_bits)
     from_eye, along, total = (unsigned(bits + 1) for _ in range(3))
 
     @always_comb
     def extend():
         divisor.next = e
-
-    @always_comb
-    def multiply():
-        position.next = eye * divisor
-        way.next = distance * slope
 
     @always_comb
     def turn_way():

@@ -4,7 +4,8 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import bit, signed
+from raycaster.hdl.signals import Signed, bit, signed
+from raycaster.hdl.verbs import plus
 from raycaster.rtl.common.by_axis import by_axis
 from raycaster.rtl.common.widths import eye_bits
 
@@ -31,7 +32,8 @@ def fold(chain, winner, column, stop, corner, weight, folded, config: Configurat
 
     eye_a, eye_x, eye_y, eye_z = (signed(far_bits) for _ in range(4))
     mirrored = signed(far_bits)
-    distance, way, twice, whole = signed(far_bits), signed(far_bits), signed(far_bits + 1), signed(far_bits + 2)
+    distance, way, twice = signed(far_bits), signed(far_bits), signed(far_bits + 1)
+    whole, mirror = plus(eye_a, twice, Signed(far_bits + 2))
     back_a, towards = bit(), bit()
     back_x, back_y, back_z, met_x, met_y, met_z = (bit() for _ in range(6))
     choices = (
@@ -53,10 +55,6 @@ def fold(chain, winner, column, stop, corner, weight, folded, config: Configurat
     @always_comb
     def double():
         twice.next = way << 1
-
-    @always_comb
-    def mirror():
-        whole.next = eye_a + twice
 
     @always_comb
     def keep():

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The slope of the first column of row after row."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import bit, signed
+from raycaster.hdl.signals import Signed, bit
+from raycaster.hdl.verbs import minus
 from raycaster.rtl.common.widths import span_slope_bits
 from raycaster.rtl.span.slope_start import slope_start
 
@@ -40,11 +41,7 @@ def row_slope(clk, first_row, next_row, camera, slope, config: Configuration):
         ]  # fmt: skip
     else:
         begins = bit()
-        below = signed(bits + 1)
-
-        @always_comb
-        def go_down():
-            below.next = slope.z - 1
+        below, go_down = minus(slope.z, 1, Signed(bits + 1))
 
         @always(clk.posedge)
         def follow():

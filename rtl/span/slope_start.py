@@ -4,7 +4,8 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import bit, signed
+from raycaster.hdl.signals import Signed, bit, signed
+from raycaster.hdl.verbs import minus, times
 
 
 @block
@@ -22,17 +23,14 @@ def slope_start(clk, first_row, next_row, forward, right, up, component, config:
     screen = config.screen_geometry
     view_distance, centre_column, horizon_row = screen.view_distance, screen.centre_column, screen.horizon_row
     # One row past the last is legal.
-    bits = len(component) + 2
+    bits = Signed(len(component) + 2)
 
-    ahead, aside, above, ahead_1, aside_1, above_1 = (signed(bits) for _ in range(6))
-    whole, below = signed(bits), signed(bits)
+    ahead, go_ahead = times(forward, view_distance, bits)
+    aside, go_aside = times(right, centre_column, bits)
+    above, go_up = times(up, horizon_row, bits)
+    below, go_down = minus(component, up, bits)
+    ahead_1, aside_1, above_1, whole = (signed(bits) for _ in range(4))
     begins = bit()
-
-    @always_comb
-    def multiply():
-        ahead.next = forward * view_distance
-        aside.next = right * centre_column
-        above.next = up * horizon_row
 
     @always(clk.posedge)
     def keep_products():
@@ -44,10 +42,6 @@ def slope_start(clk, first_row, next_row, forward, right, up, component, config:
     @always_comb
     def add():
         whole.next = ahead_1 - aside_1 + above_1
-
-    @always_comb
-    def go_down():
-        below.next = component - up
 
     @always(clk.posedge)
     def step():
