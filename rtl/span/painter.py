@@ -21,7 +21,6 @@ def painter(
     A run ends at the span's end or, before it, where the colour of any level changes, or might.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset to idle.
         emit: strobe, while idle; offer the runs from the present column of `surfaces` up to stop.
         level: unsigned, `level_bits` bits; the levels from 0 to this one are seen. Constant from emit to emitted.
@@ -37,7 +36,6 @@ def painter(
         place: unsigned output, `column_bits` bits; the column after the run.
         run: output `Run`; ready is an input. A register, since the runs before it are compared with it.
         emitted: output strobe; the span's last run is in that register in the next cycle.
-        config: the design.
     """
     reflections, share_width = config.most_reflections, weight_bits(config)
     sum_bits = CHANNEL_BITS + share_width - 1  # all shares add up to 1 << (share_width - 1)

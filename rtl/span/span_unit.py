@@ -38,7 +38,6 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
     which they change. The work depends on what is seen in the row, and hardly on the number of columns (Watkins 1970).
 
     Args:
-        clk: the clock.
         reset: synchronous, active high; ends the row.
         start: strobe; draws a row. Only after reset, and from the cycle of done on.
         slope: `Vector` of `span_slope_bits` bits; the slope of column 0 of that row, read with start.
@@ -48,7 +47,6 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
         run: output `Run`; ready is an input. Neighbouring runs differ in colour, and the last one of the row ends at
             the number of columns.
         done: output strobe, in the cycle after that in which the last run was taken.
-        config: the design.
     """
     width, mirrors = column_bits(config), config.most_reflections > 0
 

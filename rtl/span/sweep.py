@@ -26,7 +26,6 @@ def sweep(
     An entry is compared with the winner in the cycle after it was read, and with the present stop in the next cycle.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset to idle.
         start: strobe; begins a pass while idle. All entries are in the table.
         gap: flag; nothing is seen at the column, and winner is ignored. Only entries may be met there that begin there.
@@ -44,7 +43,6 @@ def sweep(
         inherited: output flag; an entry is seen at stop. Valid like stop.
         heir: output `Entry`, if inherited: the one that is seen at stop. Valid like stop.
         done: output strobe.
-        config: the design.
     """
     width, factor_bits = column_bits(config), line_factor_bits(config)
 
