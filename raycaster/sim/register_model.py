@@ -308,6 +308,8 @@ class Agent:
         valid, data = self.answer
         return {
             **self.bus,
+            "bus_access": int(not self.waiting and (inputs["avs_s0_read"] or inputs["avs_s0_write"])),
+            "bus_next_address": inputs["avs_s0_address"],
             "bus_go_live": self._go_live(inputs),
             "avs_s0_waitrequest": int(self.waiting),
             "avs_s0_readdatavalid": valid,

@@ -70,7 +70,7 @@ def avalon_interface(
         camera_readback: unsigned, 32 bits; the camera memory's word at bus.address, read at the camera's addresses
             only. 0 if the camera is fixed.
         rect_readback: unsigned, 32 bits; the word at bus.address of the rectangle memory and of other registers outside
-            of this block, 0 if there is none.
+            of this block, 0 if there is none. Read in the cycle after bus.access.
         bad_rectangle: flag; the shadow holds an enabled rectangle without a plane. Read with bus.commit.
         picture: `Picture`; output. With a fixed camera only run is driven.
         progress: `Progress`; input.
@@ -148,6 +148,8 @@ def avalon_interface(
         avs_s0.waitrequest.next = wait_request
         irq.next = irq_pending and irq_enable
         bus.go_live.next = take_scene
+        bus.access.next = (avs_s0.write or avs_s0.read) and not wait_request
+        bus.next_address.next = avs_s0.address
         picture.run.next = live_control[run_bit]
 
     # Byte enables become a mask of bits.
@@ -155,8 +157,8 @@ def avalon_interface(
     def accept():
         bus.write.next = avs_s0.write and not wait_request
         reading.next = avs_s0.read and not wait_request
-        if (avs_s0.write or avs_s0.read) and not wait_request:
-            bus.address.next = avs_s0.address
+        if bus.access:
+            bus.address.next = bus.next_address
         if avs_s0.write and not wait_request:
             bus.data.next = avs_s0.writedata
             bus.mask.next = 0

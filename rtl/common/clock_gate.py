@@ -18,7 +18,7 @@ def clock_gate(clk, reset, awake, gated_clk):
 
     Args:
         reset: synchronous, active high; the clock runs during reset.
-        awake: flag, from registers of clk; low when the clock may stop.
+        awake: flag, stable while clk is low; low when the clock may stop.
         gated_clk: output; a `derived_clock` of clk.
     """
     return ()

@@ -282,18 +282,20 @@ class SceneBus(Interface):
     """Signals from the registers to the scene memories: writes, read addresses, and when to copy the shadow.
 
     Attributes:
+        access: strobe; the next cycle reads or writes a word.
+        next_address: address of that word, read with access.
         write: strobe; write data at address.
         commit: strobe; copy the shadow to the pending scene at the end of the cycle. It comes in the cycle after the
             write that requests it, so never in the cycle after a write to a scene memory.
         go_live: strobe; copy the pending scene to the live one at the end of the cycle.
-        address: address of the word to write or to read back.
+        address: address of the word to write or to read back, that of the last access.
         data: word to write.
         mask: bits of the word to write.
     """
 
     def __init__(self, address_bits: int, is_read: bool = True):
-        self.write, self.commit, self.go_live = bit(), bit(), bit()
-        self.address = unsigned(address_bits)
+        self.access, self.write, self.commit, self.go_live = (bit() for _ in range(4))
+        self.next_address, self.address = unsigned(address_bits), unsigned(address_bits)
         self.data, self.mask = unsigned(WORD_BITS), unsigned(WORD_BITS)
         if not is_read:
             vars(self).update({name: unconnected(signal) for name, signal in vars(self).items()})

@@ -16,16 +16,18 @@ from raycaster.rtl.scene.written_rect import BANK_BITS, BANKS, CORNER, Copies, i
 def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configuration):
     """Hold `config.rectangles` slots of rectangles, and present the live rectangle that the engine fetches.
 
-    One memory holds the shadow as written. Another holds the rectangles in the engine's form, in three banks per slot:
-    enough for the shadow, pending and live copy. A cycle after a write, the rectangle is sorted into a bank that holds
-    neither the pending nor the live copy; a commit and StartScreen only reassign banks to copies. Reset clears neither
-    memory: a slot that has not been written since reads 0, and is not usable.
+    One memory holds the shadow as written, and is read in the cycle before a word is read or written, so block RAM
+    will do. Another holds the rectangles in the engine's form, in three banks per slot: enough for the shadow, pending
+    and live copy. A cycle after a write, the rectangle is sorted into a bank that holds neither the pending nor the
+    live copy; a commit and StartScreen only reassign banks to copies. Reset clears neither memory: a slot that has not
+    been written since reads 0, and is not usable.
 
     Args:
         clk: the clock.
         reset: synchronous, active high.
         bus: `SceneBus`; input.
-        readback: unsigned, 32 bits; output, combinational: the shadow's word at bus.address, 0 if there is none.
+        readback: unsigned, 32 bits; output, the shadow's word at bus.address, 0 if there is none. Valid in the cycle
+            after bus.access.
         bad_rectangle: flag; output, the shadow holds an enabled rectangle without a plane. Valid from the second cycle
             after a write on.
         rects: `Rects`; reads index and fetch, drives usable and rect. rect is don't care if the rectangle is not
@@ -37,9 +39,10 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     address_width = len(bus.address)
     index_width = index_bits(config)
 
-    slot = signed(address_width - 1)
+    slot, next_slot = signed(address_width - 1), signed(address_width - 1)
     index = Signal(intbv(0, min=0, max=count))
-    in_table, write = bit(), bit()
+    next_index = unsigned(index_width)
+    in_table, write, repeats, again = (bit() for _ in range(4))
     written = unsigned(count)
     stored, old, mask, data, merged = (written_of(config) for _ in range(5))
     implemented = tied(implemented_bits(config), len(merged.word))
@@ -50,7 +53,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     numbers = [tied(number, index_width) for number in range(count)]
     usables, bads = ([bit() for _ in range(count)] for _ in range(2))
     usable, bad = side_by_side(usables), side_by_side(bads)
-    storing, flat = bit(), bit()
+    storing, flat, reads = bit(), bit(), bit()
     latest_index = unsigned(index_width)
     latest = written_of(config)
     all_copies = [Copies() for _ in range(count)]
@@ -90,14 +93,30 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
         write.next = bus.write and in_table
 
     @always_comb
-    def read_shadow():
-        stored.word.next = shadow_words[index]
+    def find_next():
+        next_slot.next = bus.next_address[address_width:2] - table_slot
+        next_index.next = next_slot[index_width:]
 
     @always_comb
-    def clear_unwritten():
+    def see_repetition():
+        repeats.next = write and next_index == index
+
+    # A word that is being written is not read, in either memory, as block RAM would need logic for that: the words of
+    # such a slot are in the register behind the merger. Outside the table, words are don't care.
+    @always(clk.posedge)
+    def read_shadow():
+        if bus.access:
+            again.next = repeats
+            if not repeats:
+                stored.word.next = shadow_words[next_index]
+
+    @always_comb
+    def find_old():
         old.word.next = 0
         if written[index]:
             old.word.next = stored.word
+            if again:
+                old.word.next = latest.word
 
     # 0 outside the table.
     @always_comb
@@ -208,9 +227,14 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     def find_live():
         read_copies.word.next = copies_words[rects.index]
 
+    # No usable rectangle is in a bank that is being written.
+    @always_comb
+    def see_reading():
+        reads.next = rects.fetch and not (storing and write_address == read_address)
+
     @always(clk.posedge)
     def present():
-        if rects.fetch:
+        if reads:
             rects.rect.word.next = banks[read_address]
 
     return instances()

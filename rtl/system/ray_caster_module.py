@@ -75,13 +75,14 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         clk, reset, avs_s0=avs_s0, irq=irq, bus=bus, camera_readback=camera_readback,
         rect_readback=readback, bad_rectangle=bad_rectangle, picture=picture, progress=progress, config=config,
     )  # fmt: skip
-    # A write, a commit and StartScreen each take one clock of the scene's memories, however late the next clock comes.
+    # An access, a write, a commit and StartScreen each take one clock of the scene's memories, however late the next
+    # clock comes.
     if resting:
         scene_awake = bit()
 
         @always_comb
         def wake():
-            scene_awake.next = bus.write or bus.commit or bus.go_live or progress.busy
+            scene_awake.next = bus.access or bus.write or bus.commit or bus.go_live or progress.busy
 
         gate = clock_gate(clk, reset, awake=scene_awake, gated_clk=scene_clk)
     renderer = engine_of(config).renderer(

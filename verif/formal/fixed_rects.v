@@ -24,10 +24,17 @@ localparam TABLE = 16;
 localparam [95:0] KEPT = {CORNER_BITS, CORNER_BITS, SURFACE_BITS};  // the implemented bits
 localparam [95:0] SCENE_0 = {CORNER_0_0, CORNER_1_0, SURFACE_0}, SCENE_1 = {CORNER_0_1, CORNER_1_1, SURFACE_1},
     SCENE_2 = {CORNER_0_2, CORNER_1_2, SURFACE_2};
-(* anyseq *) reg [1:0] slot, word;
+(* anyseq *) reg [1:0] next_slot, next_word;
+reg [1:0] slot, word;
+reg accessed = 0;
+always @(posedge clk) begin
+    accessed <= bus_access;
+    if (bus_access) {slot, word} <= {next_slot, next_word};
+end
 wire [95:0] words = slot == 0 ? SCENE_0 : slot == 1 ? SCENE_1 : SCENE_2;
 assign bus_data = word == 0 ? words[95:64] : word == 1 ? words[63:32] : words[31:0];
 assign bus_address = TABLE + {slot, word};
+assign bus_next_address = TABLE + {next_slot, next_word};
 assign bus_mask = {32{1'b1}};
 rect_mem memory (.*);
 wire [RECT_BITS-1:0] fixed_rect;
@@ -40,7 +47,8 @@ always @(posedge clk) begin
 end
 always @* begin
     if (!running) assume (reset);
-    assume (rects_index < 3 && slot < 3 && word < 3);
+    assume (rects_index < 3 && next_slot < 3 && next_word < 3);
+    assume (!bus_write || accessed);
     assume (!(bus_commit && wrote));
 end
 

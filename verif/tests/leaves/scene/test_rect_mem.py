@@ -91,19 +91,27 @@ def test_rect_mem(rectangles, options, leaf_of, random):
     filling = fill_places(random, table)
     leaf.stimulus = filling + table_stimulus(random, table, rectangles)
     for cycle, inputs in enumerate(leaf.stimulus):
+        following = leaf.stimulus[min(cycle + 1, len(leaf.stimulus) - 1)]
+        access = bool(following["bus_write"] or random.random() < 0.8)
         leaf.stimulus[cycle] = inputs | {
+            "bus_access": int(access),
+            "bus_next_address": following["bus_address"],
             "rects_fetch": int(cycle < len(filling) or random.random() < 0.6),
             "rects_index": int(random.integers(rectangles)),
         }
+        if not access:
+            following["bus_address"] = inputs["bus_address"]
         # The write that asks for a commit goes to another word, in the cycle before.
         if inputs["bus_commit"] and cycle:
             leaf.stimulus[cycle - 1]["bus_write"] = 0
-    presented, bad = {}, False
+    presented, bad, accessed = {}, False, False
     for cycle, inputs in enumerate(leaf.stimulus):
         live, shadow = table.rectangles("live"), table.rectangles("shadow")
         word = table.words.get(inputs["bus_address"])
         usable = sum(int(flag) << index for index, flag in enumerate(live.visible))
-        wanted = {"readback": word.shadow if word else 0, "bad_rectangle": bad, "rects_usable": usable}
+        wanted = {"bad_rectangle": bad, "rects_usable": usable}
+        wanted |= {"readback": word.shadow if word else 0} if accessed else {}
+        accessed = bool(inputs["bus_access"])
         leaf.expected[cycle] = wanted | presented
         if live.visible.any() and random.random() < 0.5:
             inputs["rects_index"] = int(random.choice(np.flatnonzero(live.visible)))
