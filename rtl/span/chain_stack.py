@@ -15,32 +15,42 @@ def chain_stack(clk, push, level, kept, frame, config: Configuration):
     Args:
         clk: the clock.
         push: strobe; stores kept at this level.
-        level: unsigned, `level_bits` bits; 0 to the number of reflections, less than that with push.
+        level: unsigned, `level_bits` bits; 0 to the number of reflections, less than that with push. Not read with one
+            reflection.
         kept: `Frame`; read with push.
-        frame: output `Frame`; that of the level below, don't care at level 0. Combinational.
+        frame: output `Frame`; that of the level below, don't care at level 0. From the cycle after push on.
         config: the design, with reflections.
     """
     width = bits_for(config.most_reflections)
-    memory = [unsigned(len(kept.word)) for _ in range(1 << width)]
-    above, below = unsigned(width), unsigned(width)
-    lower = unsigned(level_bits(config))
 
-    @always_comb
-    def descend():
-        lower.next = (level - 1) % (1 << len(lower))
+    if config.most_reflections == 1:
 
-    @always_comb
-    def address():
-        above.next = level[width:]
-        below.next = lower[width:]
+        @always(clk.posedge)
+        def store():
+            if push:
+                frame.word.next = kept.word
 
-    @always(clk.posedge)
-    def store():
-        if push:
-            memory[above].next = kept.word
+    else:
+        memory = [unsigned(len(kept.word)) for _ in range(1 << width)]
+        above, below = unsigned(width), unsigned(width)
+        lower = unsigned(level_bits(config))
 
-    @always_comb
-    def show():
-        frame.word.next = memory[below]
+        @always_comb
+        def descend():
+            lower.next = (level - 1) % (1 << len(lower))
+
+        @always_comb
+        def address():
+            above.next = level[width:]
+            below.next = lower[width:]
+
+        @always(clk.posedge)
+        def store():
+            if push:
+                memory[above].next = kept.word
+
+        @always_comb
+        def show():
+            frame.word.next = memory[below]
 
     return instances()

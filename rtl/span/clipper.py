@@ -129,8 +129,12 @@ def clipper(clk, reset, chain, opened, met, asks, answer, append, entry, idle, c
                 taken.next = (taken + 1) % count
 
     @always_comb
-    def look_up():
+    def see_idle():
         idle.next = put == taken
+
+    # Nothing ends in the cycles after an opening and after an end, as a rectangle has several lines.
+    @always(clk.posedge)
+    def look_up():
         oldest.word.next = entries[taken]
 
     found = entry.joined(

@@ -17,7 +17,7 @@ def entry_table(clk, level, shadows, append, number, entry, read, place, stored,
         level: unsigned, `level_bits` bits; the level that is written or read.
         shadows: flag, read with `config.light`; the table of what shades the level's surface, instead of that of its
             chain.
-        append: strobe; stores entry at number.
+        append: strobe; stores entry at number. Not with read, for which block RAM would need more logic.
         number: unsigned, `count_bits` bits; read with append.
         entry: `Entry`; read with append.
         read: strobe; reads the entry at place.
@@ -66,7 +66,7 @@ def entry_table(clk, level, shadows, append, number, entry, read, place, stored,
 
     @always(clk.posedge)
     def fetch():
-        if read:
+        if read and not append:
             stored.word.next = memory[read_address]
 
     return instances()

@@ -71,14 +71,16 @@ class Entry(Record):
 class Frame(Record):
     """State of a chain, kept while the chains behind its mirror are drawn: the chain, and the place of its sweep.
 
-    part_stop: the end of the part of the span that is being drawn; stop: the span's end; heir, inherited: the entry
-    that is seen next, and whether there is one; count: number of the chain's entries.
+    chain: only with several reflections, as there is only one chain without a mirror; part_stop: the end of the part of
+    the span that is being drawn; stop: the span's end; heir, inherited: the entry that is seen next, and whether there
+    is one; count: number of the chain's entries.
     """
 
     def __init__(self, config: Configuration):
         entry, columns = len(Entry(config).word), column_bits(config)
+        chain = len(Chain(config).word) * (config.most_reflections > 1)
         super().__init__(
-            {"chain": len(Chain(config).word), "winner": entry, "heir": entry, "inherited": 1}
+            {"chain": chain, "winner": entry, "heir": entry, "inherited": 1}
             | {"part_stop": columns, "stop": columns, "count": count_bits(config)}
         )
 

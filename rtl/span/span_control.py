@@ -29,7 +29,7 @@ def span_control(
         clk: the clock.
         reset: flag; synchronous reset to idle.
         start: strobe; draws a row while idle.
-        camera: `Camera`; its position is read with start.
+        camera: `Camera`; its position is read, constant while a row is drawn.
         picture: `Picture`; reflections and background are read, constant while a row is drawn.
         rect: `Rect` that was fetched last.
         set_up_done: strobe; all entries of the chain are in the table.
@@ -94,6 +94,19 @@ def span_control(
         met_z=False, weight=first_weight,
     )  # fmt: skip
 
+    # With one reflection, only the first chain has another one behind it.
+    if config.most_reflections == 1:
+
+        @always_comb
+        def see_frame_chain():
+            frame_chain.word.next = first
+
+    elif mirrors:
+
+        @always_comb
+        def see_frame_chain():
+            frame_chain.word.next = frame.chain
+
     @always_comb
     def operate():
         begin_set_up.next = begins or (state == SpanState.DESCEND)
@@ -139,7 +152,6 @@ def span_control(
         @always_comb
         def see_weight():
             weight.next = chain.weight
-            frame_chain.word.next = frame.chain
 
         @always_comb
         def see_own():
@@ -234,7 +246,7 @@ def span_control(
             chain.word.next = folded.word
             level.next = (level + 1) % (1 << len(level))
         elif state == SpanState.ASCEND:
-            chain.word.next = frame.chain
+            chain.word.next = frame_chain.word
             level.next = (level - 1) % (1 << len(level))
             winner.word.next = frame.winner
             gap.next = False
