@@ -6,9 +6,10 @@ from myhdl import always, always_comb, block, instances
 from raycaster.hdl.signals import bit, bits_for, side_by_side, tied, unconnected, unsigned
 from raycaster.rtl.span.frame_switch import frame_switch
 from raycaster.rtl.span.list_player import list_player
-from raycaster.rtl.span.lists import ListEntry
+from raycaster.rtl.span.lists import ListEntry, entry_bits
 from raycaster.rtl.span.row_collector import row_collector
 from raycaster.rtl.span.row_dealer import row_dealer
+from raycaster.rtl.span.run_memory import BANK_PLACES, LARGE_BANK
 from raycaster.rtl.span.run_queue import run_queue
 
 
@@ -48,11 +49,10 @@ def frame_list(
         queue: runs that a unit's queue holds, at least columns; not used with one unit.
     """
     pixel_bits = len(shown) // pixels
-    place_width = bits_for(2 * entries + 1)
 
     new_frame, whole, full, upper, view_run, write, dropped, abandoned = (bit() for _ in range(8))
     offered, take = bit(), bit()
-    first, place = unsigned(place_width), unsigned(place_width)
+    place = unsigned(entry_bits(entries))
     turn = unsigned(bits_for(units)) if units > 1 else unconnected(1)
     head, entry = ListEntry(columns, pixel_bits), ListEntry(columns, pixel_bits)
     room = unsigned(units) if units > 1 else tied(1, 1)
@@ -66,13 +66,13 @@ def frame_list(
         start=start, rows=rows, units=units,
     )  # fmt: skip
     collector = row_collector(
-        clk, reset=dropped, new_frame=new_frame, first=first, offered=offered, head=head, take=take, turn=turn,
+        clk, reset=dropped, new_frame=new_frame, offered=offered, head=head, take=take, turn=turn,
         write=write, place=place, entry=entry, whole=whole, full=full, columns=columns, rows=rows, units=units,
         entries=entries,
     )  # fmt: skip
     player = list_player(
         clk, reset, scan=scan, upper=upper, view_run=view_run, write=write, write_place=place, written=entry,
-        shown=shown, pixels=pixels, entries=entries,
+        shown=shown, pixels=pixels, entries=entries, bank=LARGE_BANK if entries == LARGE_BANK else BANK_PLACES,
     )  # fmt: skip
 
     @always_comb
@@ -82,12 +82,6 @@ def frame_list(
     @always(clk.posedge)
     def stop_units():
         stop.next = abandoned and not reset
-
-    @always_comb
-    def find_first():
-        first.next = 0
-        if upper:
-            first.next = entries
 
     if units == 1:
 

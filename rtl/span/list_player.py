@@ -4,11 +4,12 @@
 from myhdl import always_comb, block, concat, instances
 
 from raycaster.hdl.signals import bit, bits_for, tied, unconnected, unsigned
+from raycaster.rtl.span.list_memory import list_memory
 from raycaster.rtl.span.pair_player import pair_player
 from raycaster.rtl.span.pixel_player import pixel_player
 from raycaster.rtl.span.read_ahead import read_ahead
 from raycaster.rtl.span.row_place import row_place
-from raycaster.rtl.span.run_memory import BANK_PLACES, read_latency, run_memory
+from raycaster.rtl.span.run_memory import BANK_PLACES, read_latency
 
 
 @block
@@ -18,10 +19,11 @@ def list_player(
 ):  # fmt: skip
     """Keep both lists, and play the one in view.
 
-    With two pixels per clock, even and odd entries have memories of their own, since two runs of one pixel each may be
-    needed in every clock. Each memory is read ahead, so that no comparison with an entry decides about an address.
+    With two pixels per clock, even and odd entries of a list have memories of their own, since two runs of one pixel
+    each may be needed in every clock. Each memory is read ahead, so that no comparison with an entry decides about an
+    address.
 
-    A line must begin at least eight cycles and the latency of a `run_memory` before its first pixel.
+    A line must begin at least eight cycles and the latency of a `list_memory` before its first pixel.
 
     Args:
         clk: the clock.
@@ -31,17 +33,17 @@ def list_player(
             scan.start_screen.
         view_run: flag; there is a frame in the list in view. Changes like upper.
         write: strobe; written belongs to the list that is drawn.
-        write_place: unsigned, `entry_bits` bits; number of the entry. The upper list follows the lower one.
+        write_place: unsigned, `entry_bits` bits; number of the entry.
         written: `ListEntry`.
         shown: unsigned output; the pixels of a clock, each as in `ListEntry`, the left one in the lowest bits.
         pixels: pixels per clock, 1 or 2.
         entries: entries of a list, an even number.
         bank: places of a bank of a memory.
     """
-    places = 2 * entries // pixels
+    places = entries // pixels
     place_bits = bits_for(places)
 
-    first, place = unsigned(len(write_place)), unsigned(len(write_place))
+    place = unsigned(len(write_place))
     restart, playing = bit(), bit()
     taken = unsigned(2)
     firsts, reads = ([unsigned(place_bits) for _ in range(pixels)] for _ in range(2))
@@ -50,13 +52,13 @@ def list_player(
     fetched, heads = ([written.twin() for _ in range(pixels)] for _ in range(2))
 
     follower = row_place(
-        clk, reset, scan=scan, first=first, view_run=view_run, taken=taken, restart=restart, place=place,
+        clk, reset, scan=scan, view_run=view_run, taken=taken, restart=restart, place=place,
         playing=playing,
     )  # fmt: skip
-    banks = [
-        run_memory(
-            clk, write=writes[i], write_place=bank_place, written=written, read_place=reads[i], shown=fetched[i],
-            places=places, bank=bank,
+    memories = [
+        list_memory(
+            clk, upper=upper, write=writes[i], write_place=bank_place, written=written, read_place=reads[i],
+            shown=fetched[i], places=places, bank=bank,
         )
         for i in range(pixels)
     ]  # fmt: skip
@@ -68,12 +70,6 @@ def list_player(
         )
         for i in range(pixels)
     ]  # fmt: skip
-
-    @always_comb
-    def find_first():
-        first.next = 0
-        if not upper:
-            first.next = entries
 
     if pixels == 1:
         (bank_write,), (bank_first,), (bank_take,) = writes, firsts, takes
@@ -99,7 +95,7 @@ def list_player(
         first_even, first_odd = firsts
         take_even, take_odd = takes
         odd = place(0)
-        bits, last = place_bits + 1, 2 * entries - 1
+        bits, last = place_bits + 1, entries - 1
         left, right = (unsigned(len(written.pixel)) for _ in range(2))
         player = pair_player(
             clk, playing=playing, visible_line=scan.visible_line, next_column=scan.next_column, odd=odd,

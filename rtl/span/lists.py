@@ -11,8 +11,8 @@ def end_bits(columns: int) -> int:
 
 
 def entry_bits(entries: int) -> int:
-    """Width of the number of an entry of either list, 0 up to one past the last of both."""
-    return bits_for(2 * entries + 1)
+    """Width of the number of an entry of a list, 0 up to one past the last."""
+    return bits_for(entries + 1)
 
 
 class ListEntry(Record):

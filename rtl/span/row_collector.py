@@ -8,7 +8,7 @@ from raycaster.hdl.signals import bit, bits_for, unsigned
 
 @block
 def row_collector(
-    clk, reset, new_frame, first, offered, head, take, turn, write, place, entry, whole, full, columns: int, rows: int,
+    clk, reset, new_frame, offered, head, take, turn, write, place, entry, whole, full, columns: int, rows: int,
     units: int, entries: int,
 ):  # fmt: skip
     """Write the runs of a frame into a list, in the order of the picture, an entry per cycle.
@@ -24,7 +24,6 @@ def row_collector(
         clk: the clock.
         reset: flag; synchronous, drops the frame.
         new_frame: strobe; a frame begins.
-        first: unsigned, `entry_bits` bits; number of the list's first entry. Read with new_frame.
         offered: flag; head is the next run of the unit whose turn it is.
         head: `ListEntry`; read while offered.
         take: output strobe; head has been taken.
@@ -39,10 +38,9 @@ def row_collector(
         units: number of units.
         entries: entries of a list.
     """
-    last_unit = units - 1
+    last_unit, last_place = units - 1, entries - 1
 
     rows_left = unsigned(bits_for(rows + 1))
-    room = unsigned(bits_for(entries + 1))
     next_place = unsigned(len(place))
     wanted, ends = bit(), bit()
     # Whether rows are left, and places, as the queues wait for these.
@@ -66,12 +64,10 @@ def row_collector(
         elif new_frame:
             rows_left.next = rows
             collecting.next = True
-            room.next = entries
             fits.next = True
-            next_place.next = first
+            next_place.next = 0
         elif take:
-            room.next = room - 1
-            fits.next = room != 1
+            fits.next = next_place != last_place
             next_place.next = (next_place + 1) % (1 << len(next_place))
             if ends:
                 rows_left.next = rows_left - 1

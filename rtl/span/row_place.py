@@ -7,7 +7,7 @@ from raycaster.hdl.signals import bit, unsigned
 
 
 @block
-def row_place(clk, reset, scan, first, view_run, taken, restart, place, playing):
+def row_place(clk, reset, scan, view_run, taken, restart, place, playing):
     """Follow the shown list: each row begins where the row above ended, and each line of a row at the row's first run.
 
     After the last row its lines go on until StartScreen; they are in blanking.
@@ -16,13 +16,11 @@ def row_place(clk, reset, scan, first, view_run, taken, restart, place, playing)
         clk: the clock.
         reset: synchronous, active high.
         scan: `Scan`; next_column is not read.
-        first: unsigned, `entry_bits` bits; number of the first entry of the list in view. It changes, like view_run,
-            only in the cycle after scan.start_screen.
-        view_run: flag; the list in view has a frame.
+        view_run: flag; the list in view has a frame. Changes only in the cycle after scan.start_screen.
         taken: unsigned, 2 bits; entries that end in this cycle, 0 while the line is not visible.
         restart: output strobe, before each line of a row: in the second cycle after scan.start_row or after the end of
             a line's visible part.
-        place: unsigned output, like first; number of the present entry. With restart, of the line's first.
+        place: unsigned output, `entry_bits` bits; number of the present entry. With restart, of the line's first.
         playing: output flag; there is a row to show.
     """
     limit = 1 << len(place)
@@ -46,7 +44,7 @@ def row_place(clk, reset, scan, first, view_run, taken, restart, place, playing)
         restart.next = False
         if screen_starts:
             playing.next = False
-            next_first.next = first
+            next_first.next = 0
         elif row_starts:
             playing.next = view_run
             restart.next = view_run

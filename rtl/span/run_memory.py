@@ -12,6 +12,9 @@ BANK_PLACES = 2048
 """Runs of a bank, a power of two: as many as a block RAM of an ECP5 or a GW2A holds if it is as wide as a byte and its
 parity. So a bank is a few of these blocks side by side, and nothing is between them and its register."""
 
+LARGE_BANK = 16384
+"""Runs of a bank that is a whole list of this length: as many as a single-port RAM of an iCE40UP holds."""
+
 CHOICES = 4
 """Banks of a `bank_choice` and of a `bank_feed`."""
 
@@ -29,7 +32,7 @@ def read_latency(places: int, bank: int = BANK_PLACES) -> int:
 
 
 @block
-def run_memory(clk, write, write_place, written, read_place, shown, places: int, bank: int = BANK_PLACES):
+def run_memory(clk, write, write_place, written, read, read_place, shown, places: int, bank: int = BANK_PLACES):
     """Keep runs in block RAM, which is unknown at power-up.
 
     A large memory is made of banks, each with a register of its own, and of a tree of registers behind them: a
@@ -41,9 +44,10 @@ def run_memory(clk, write, write_place, written, read_place, shown, places: int,
         write: strobe; stores written.
         write_place: unsigned, below places; read with write.
         written: `ListEntry`; read with write.
-        read_place: unsigned, below places.
-        shown: `ListEntry`; output, the run at read_place `read_latency` cycles later. Don't care if the place was
-            written in the cycle in which it was read.
+        read: flag.
+        read_place: unsigned, below places; read with the flag of that name.
+        shown: `ListEntry`; output, the run at read_place `read_latency` cycles later, and 0 that long after a cycle
+            without read. Don't care if the place was written in the cycle in which it was read.
         places: number of runs.
         bank: number of runs of a bank, a power of two.
     """
@@ -52,7 +56,7 @@ def run_memory(clk, write, write_place, written, read_place, shown, places: int,
 
     if count == 1:
         only = run_bank(
-            clk, write=write, write_place=write_place, written=written.word, read=tied(1, 1), read_place=read_place,
+            clk, write=write, write_place=write_place, written=written.word, read=read, read_place=read_place,
             shown=shown.word, places=places,
         )  # fmt: skip
     else:
@@ -67,7 +71,8 @@ def run_memory(clk, write, write_place, written, read_place, shown, places: int,
             @always_comb
             def choose_bank():
                 reads.next = 0
-                reads.next[read_place[top:low]] = True
+                if read:
+                    reads.next[read_place[top:low]] = True
                 writes.next = 0
                 if write:
                     writes.next[write_place[top:low]] = True
@@ -93,7 +98,8 @@ def run_memory(clk, write, write_place, written, read_place, shown, places: int,
             @always_comb
             def choose_feed():
                 reads.next = 0
-                reads.next[read_place[top:middle]] = True
+                if read:
+                    reads.next[read_place[top:middle]] = True
                 writes.next = 0
                 if write:
                     writes.next[write_place[top:middle]] = True

@@ -40,8 +40,8 @@ def run_queue(
     shown = run.twin()
 
     memory = run_memory(
-        clk, write=put, write_place=write_place, written=run, read_place=read_place, shown=shown, places=places,
-        bank=bank,
+        clk, write=put, write_place=write_place, written=run, read=tied(1, 1), read_place=read_place, shown=shown,
+        places=places, bank=bank,
     )  # fmt: skip
     reader = read_ahead(
         clk, restart=reset, first=tied(0, write_place), more=more, shown=shown, take=take, fetch=fetch,

@@ -13,7 +13,7 @@
 // claim = "each pixel of each line is that of its run, which is found by the ends of the row's runs in the list"
 // modules = [
 //   "list_player", "row_place", "pixel_player if PIXELS == 1", "pair_player if PIXELS == 2", "read_ahead",
-//   "run_memory", "run_bank",
+//   "list_memory", "run_memory", "run_bank",
 // ]
 // as_registers = ["read_ahead", "run_bank"]
 // induction = 1
@@ -24,31 +24,40 @@
 // [faults]
 // "1 pixel" = ["pixel_player.column_end 1 in 20", "pixel_player.take 0 in 20", "read_ahead.head_slot 0 in 20",
 //   "read_ahead.restart 0 in 20", "row_place.next_first 0 in 30", "row_place.row_first as next_first in 30",
-//   "list_player.first 0 in 30", "row_place.view_run 1 in 20"]
+//   "list_memory.lower_read 1 in 30", "row_place.view_run 1 in 20"]
 // "2 pixels" = ["pair_player.splits 0 in 20", "pair_player.odd 0 in 20", "pair_player.after_ends 0 in 20",
 //   "pair_player.right as left in 20", "list_player.first_even as first_odd in 30", "list_player.taken short in 20"]
 
 module played_lines;
-localparam BLANKING = 10, PLACES = 2 * ENTRIES / PIXELS, ONE = RUN_BITS;
+localparam BLANKING = 10, PLACES = ENTRIES / PIXELS, ONE = RUN_BITS;
 list_player dut (.*);
 wire start_screen = scan_start_screen, start_row = scan_start_row, visible = scan_visible_line;
 wire next_column = scan_next_column;
 
-// The entries of both lists.
-wire [4*ONE-1:0] bank_0, bank_1;
+// The entries of the list in view: with two pixels per clock, the even and the odd ones.
+wire [2*ONE-1:0] bank_0, bank_1;
 generate if (PIXELS == 2) begin: two_banks
-    assign bank_0 = {\dut.run_memory_0_i.run_bank_i.memory[3] , \dut.run_memory_0_i.run_bank_i.memory[2] ,
-        \dut.run_memory_0_i.run_bank_i.memory[1] , \dut.run_memory_0_i.run_bank_i.memory[0] };
-    assign bank_1 = {\dut.run_memory_1_i.run_bank_i.memory[3] , \dut.run_memory_1_i.run_bank_i.memory[2] ,
-        \dut.run_memory_1_i.run_bank_i.memory[1] , \dut.run_memory_1_i.run_bank_i.memory[0] };
+    assign bank_0 = upper
+        ? {\dut.list_memory_0_i.run_memory_0_i.run_bank_i.memory[1] ,
+            \dut.list_memory_0_i.run_memory_0_i.run_bank_i.memory[0] }
+        : {\dut.list_memory_0_i.run_memory_1_i.run_bank_i.memory[1] ,
+            \dut.list_memory_0_i.run_memory_1_i.run_bank_i.memory[0] };
+    assign bank_1 = upper
+        ? {\dut.list_memory_1_i.run_memory_0_i.run_bank_i.memory[1] ,
+            \dut.list_memory_1_i.run_memory_0_i.run_bank_i.memory[0] }
+        : {\dut.list_memory_1_i.run_memory_1_i.run_bank_i.memory[1] ,
+            \dut.list_memory_1_i.run_memory_1_i.run_bank_i.memory[0] };
 end else begin: one_bank
-    assign bank_0 = {\dut.run_memory_i.run_bank_i.memory[3] , \dut.run_memory_i.run_bank_i.memory[2] ,
-        \dut.run_memory_i.run_bank_i.memory[1] , \dut.run_memory_i.run_bank_i.memory[0] };
+    assign bank_0 = upper
+        ? {\dut.list_memory_i.run_memory_0_i.run_bank_i.memory[1] ,
+            \dut.list_memory_i.run_memory_0_i.run_bank_i.memory[0] }
+        : {\dut.list_memory_i.run_memory_1_i.run_bank_i.memory[1] ,
+            \dut.list_memory_i.run_memory_1_i.run_bank_i.memory[0] };
     assign bank_1 = 0;
 end endgenerate
-function [ONE-1:0] of(input [4*ONE-1:0] even, input [4*ONE-1:0] odd, input [4:0] number);
-    if (PIXELS == 1) of = even >> ONE * number[1:0];
-    else of = (number[0] ? odd : even) >> ONE * number[2:1];
+function [ONE-1:0] of(input [2*ONE-1:0] even, input [2*ONE-1:0] odd, input [4:0] number);
+    if (PIXELS == 1) of = even >> ONE * number[0];
+    else of = (number[0] ? odd : even) >> ONE * number[1];
 endfunction
 
 // The monitor: cycles since a line's visible part, and columns of the line that are over.
@@ -76,7 +85,6 @@ end
 // The reference: the entry of the present column, and the first ones of this row and of the next.
 reg shows;
 reg [4:0] entry, row_first, row_next;
-wire [4:0] first = upper ? 0 : ENTRIES;
 wire [ONE-1:0] now = of(bank_0, bank_1, entry), after = of(bank_0, bank_1, entry + 1);
 wire splits = now[ONE-1:1] == column + 1;
 wire [4:0] entry_2 = entry + splits;
@@ -91,7 +99,7 @@ always @(posedge clk) begin
     else begin
         if (start_screen) shows <= 0;
         else if (start_row) shows <= view_run;
-        if ($past(start_screen) && !$past(reset)) row_next <= first;
+        if ($past(start_screen) && !$past(reset)) row_next <= 0;
         else if (was_visible && !visible && shows) row_next <= entry;
         if (start_row) row_first <= was_visible && shows ? entry : row_next;
     end
@@ -100,8 +108,8 @@ always @(posedge clk) begin
 end
 always @* begin
     if (known && !($past(start_screen) && !$past(reset))) assume ($stable(upper) && $stable(view_run));
-    if (write) assume (write_place >= (upper ? ENTRIES : 0) && write_place < (upper ? 2 * ENTRIES : ENTRIES));
-    if (visible && shows) assume (entry >= first && entry + (splits && PIXELS == 2) < first + ENTRIES);
+    if (write) assume (write_place < ENTRIES);
+    if (visible && shows) assume (entry + (splits && PIXELS == 2) < ENTRIES);
 end
 
 // The pixels of a clock, in lines of the picture and between them.
@@ -135,43 +143,70 @@ end
 wire [3*PIXELS-1:0] ahead, filled;
 wire [2*PIXELS-1:0] head_slot, put_slot, on_the_way, read_place;
 wire [4*ONE*PIXELS-1:0] slots;
-wire [PIXELS-1:0] bank_reads;
+wire [PIXELS-1:0] lower_reads, upper_reads;
+wire [ONE*PIXELS-1:0] lower_runs, upper_runs;
 wire [2*ONE*PIXELS-1:0] arriving;  // the run that comes from the memory, and above it the one after it
 generate if (PIXELS == 2) begin: two_readers
-    assign bank_reads = {dut.run_memory_1_i.run_bank_i.reads, dut.run_memory_0_i.run_bank_i.reads};
+    assign lower_reads = {dut.list_memory_1_i.run_memory_0_i.run_bank_i.reads,
+        dut.list_memory_0_i.run_memory_0_i.run_bank_i.reads};
+    assign upper_reads = {dut.list_memory_1_i.run_memory_1_i.run_bank_i.reads,
+        dut.list_memory_0_i.run_memory_1_i.run_bank_i.reads};
+    assign lower_runs = {dut.list_memory_1_i.lower_run_word, dut.list_memory_0_i.lower_run_word};
+    assign upper_runs = {dut.list_memory_1_i.upper_run_word, dut.list_memory_0_i.upper_run_word};
     assign ahead[3*0 +: 3] = dut.read_ahead_0_i.taken_slots, filled[3*0 +: 3] = dut.read_ahead_0_i.filled_slots;
     assign head_slot[2*0 +: 2] = dut.read_ahead_0_i.head_slot, put_slot[2*0 +: 2] = dut.read_ahead_0_i.put_slot;
     assign on_the_way[2*0 +: 2] = dut.read_ahead_0_i.on_the_way, read_place[2*0 +: 2] = dut.read_ahead_0_i.read_place;
     assign slots[4*ONE*0 +: 4*ONE] = {\dut.read_ahead_0_i.slots[3] , \dut.read_ahead_0_i.slots[2] ,
         \dut.read_ahead_0_i.slots[1] , \dut.read_ahead_0_i.slots[0] };
-    assign arriving[2*ONE*0 +: 2*ONE] = {dut.run_memory_0_i.run_bank_i.fetched, dut.run_memory_0_i.shown_word};
+    assign arriving[2*ONE*0 +: ONE] = dut.list_memory_0_i.shown_word;
+    assign arriving[2*ONE*0 + ONE +: ONE] = upper ? dut.list_memory_0_i.run_memory_0_i.run_bank_i.fetched
+        : dut.list_memory_0_i.run_memory_1_i.run_bank_i.fetched;
     assign ahead[3*1 +: 3] = dut.read_ahead_1_i.taken_slots, filled[3*1 +: 3] = dut.read_ahead_1_i.filled_slots;
     assign head_slot[2*1 +: 2] = dut.read_ahead_1_i.head_slot, put_slot[2*1 +: 2] = dut.read_ahead_1_i.put_slot;
     assign on_the_way[2*1 +: 2] = dut.read_ahead_1_i.on_the_way, read_place[2*1 +: 2] = dut.read_ahead_1_i.read_place;
     assign slots[4*ONE*1 +: 4*ONE] = {\dut.read_ahead_1_i.slots[3] , \dut.read_ahead_1_i.slots[2] ,
         \dut.read_ahead_1_i.slots[1] , \dut.read_ahead_1_i.slots[0] };
-    assign arriving[2*ONE*1 +: 2*ONE] = {dut.run_memory_1_i.run_bank_i.fetched, dut.run_memory_1_i.shown_word};
+    assign arriving[2*ONE*1 +: ONE] = dut.list_memory_1_i.shown_word;
+    assign arriving[2*ONE*1 + ONE +: ONE] = upper ? dut.list_memory_1_i.run_memory_0_i.run_bank_i.fetched
+        : dut.list_memory_1_i.run_memory_1_i.run_bank_i.fetched;
 end else begin: one_reader
-    assign bank_reads = dut.run_memory_i.run_bank_i.reads;
+    assign lower_reads = dut.list_memory_i.run_memory_0_i.run_bank_i.reads;
+    assign upper_reads = dut.list_memory_i.run_memory_1_i.run_bank_i.reads;
+    assign lower_runs = dut.list_memory_i.lower_run_word, upper_runs = dut.list_memory_i.upper_run_word;
     assign ahead[3*0 +: 3] = dut.read_ahead_i.taken_slots, filled[3*0 +: 3] = dut.read_ahead_i.filled_slots;
     assign head_slot[2*0 +: 2] = dut.read_ahead_i.head_slot, put_slot[2*0 +: 2] = dut.read_ahead_i.put_slot;
     assign on_the_way[2*0 +: 2] = dut.read_ahead_i.on_the_way, read_place[2*0 +: 2] = dut.read_ahead_i.read_place;
     assign slots[4*ONE*0 +: 4*ONE] = {\dut.read_ahead_i.slots[3] , \dut.read_ahead_i.slots[2] ,
         \dut.read_ahead_i.slots[1] , \dut.read_ahead_i.slots[0] };
-    assign arriving[2*ONE*0 +: 2*ONE] = {dut.run_memory_i.run_bank_i.fetched, dut.run_memory_i.shown_word};
+    assign arriving[2*ONE*0 +: ONE] = dut.list_memory_i.shown_word;
+    assign arriving[2*ONE*0 + ONE +: ONE] = upper ? dut.list_memory_i.run_memory_0_i.run_bank_i.fetched
+        : dut.list_memory_i.run_memory_1_i.run_bank_i.fetched;
 end endgenerate
 wire reads = playing && !restart && !screen_starts;
+
+// The list in view has been read for a while when a row begins, and the other list shows nothing.
+reg known_1 = 0;
+always @(posedge clk) known_1 <= known;
+always @* if (known) begin
+    assert (lower_reads == {PIXELS{$past(upper)}} && upper_reads == {PIXELS{!$past(upper)}});
+    assert ($stable(upper) || screen_starts);
+    if (row_starts || (playing && !screen_starts)) assert (upper == $past(upper) && upper == $past(upper, 2));
+end
+always @* if (known_1) begin
+    if ($past(upper, 2)) assert (upper_runs == 0);
+    else assert (lower_runs == 0);
+end
+
 genvar i, k;
 generate for (i = 0; i < PIXELS; i = i + 1) begin: banks
     wire [2:0] held = ahead[3*i +: 3], there = filled[3*i +: 3];
     wire [1:0] head = head_slot[2*i +: 2], coming = on_the_way[2*i +: 2];
     wire [4:0] head_place = PIXELS == 1 ? place : (place + (1 - i)) >> 1;
     wire [4:0] most = blank - 5;
-    always @* if (known) assert (bank_reads[i]);
     always @* if (known && reads) begin
         assert (held <= 4 && there <= 4 && held == there + coming[0] + coming[1]);
         assert (put_slot[2*i +: 2] == head + there[1:0]);
-        assert (read_place[2*i +: 2] == head_place[1:0] + held[1:0]);
+        assert (read_place[2*i +: 2] == (head_place + held) % PLACES);
         if (visible) assert (held >= 3);
         else if (blank > 5) assert (held >= (most > 4 ? 4 : most));
     end
@@ -179,7 +214,7 @@ generate for (i = 0; i < PIXELS; i = i + 1) begin: banks
         wire [4:0] number = PIXELS == 1 ? (head_place + k) % PLACES : (head_place + k) % PLACES * 2 + i;
         wire [1:0] slot = head + k;
         wire [ONE-1:0] run = of(bank_0, bank_1, number);
-        always @* if (known && reads && number >= first && number < first + ENTRIES) begin
+        always @* if (known && reads) begin
             if (k < there) assert (slots[ONE*(4*i + slot) +: ONE] == run);
             else if (k == there && coming[1]) assert (arriving[2*ONE*i +: ONE] == run);
             else if (k < held) assert (arriving[2*ONE*i + ONE +: ONE] == run);

@@ -24,9 +24,9 @@
 // ]
 // designs = ["alone=list UNITS=3 ROWS=4 COLUMNS=2 ENTRIES=8 PIXELS=1"]
 // [faults]
-// "units 2, rows 3" = ["frame_switch.upper 0 in 20", "frame_list.first 0 in 20", "frame_switch.ready 1 in 20",
+// "units 2, rows 3" = ["frame_switch.upper 0 in 20", "frame_switch.ready 1 in 20",
 //   "frame_switch.take_scene as start_screen in 20", "row_collector.rows_left edge in 20",
-//   "row_collector.turn 0 in 20", "row_collector.room 1 in 20", "row_collector.write late in 20",
+//   "row_collector.turn 0 in 20", "row_collector.next_place 0 in 20", "row_collector.write late in 20",
 //   "row_dealer.busy 0 in 20", "row_dealer.turn 0 in 20", "frame_switch.drawn_run 1 in 20",
 //   "row_collector.whole late in 20"]
 
@@ -35,7 +35,7 @@ frame_list dut (.*);
 wire start_screen = scan_start_screen, write = dut.write, upper = dut.upper, new_frame = dut.new_frame;
 wire abandoned = dut.abandoned;
 wire row_written = write && dut.entry_word[RUN_BITS-1:1] == COLUMNS;
-wire [7:0] place = dut.place, first = upper ? ENTRIES : 0;
+wire [7:0] place = dut.place;
 
 // The frame that is drawn: from the cycle after new_frame until its last entry is written, or it is abandoned.
 // waits: a whole frame, maybe a black one, waits for StartScreen. whole[i]: list i is a whole frame.
@@ -74,7 +74,7 @@ end
 // The list in view is one whole frame. Nothing is written into it, and only a whole frame takes its place.
 always @* if (known) begin
     if (view_run) assert (whole[!upper]);
-    if (write) assert (drawing && place == first + entries_in && entries_in < ENTRIES && rows_in < ROWS);
+    if (write) assert (drawing && place == entries_in && entries_in < ENTRIES && rows_in < ROWS);
     if ($past(known) && !$past(reset)) begin
         assert (upper == ($past(upper) ^ $past(hands_over)));
         assert (view_run == ($past(hands_over) ? !$past(black) : $past(view_run)));
@@ -114,18 +114,18 @@ always @* if (known && !drawing) assert (!take && !abandoned);
 
 // Invariants.
 wire [1:0] state = dut.frame_switch_i.state;
-wire [7:0] rows_left = dut.row_collector_i.rows_left, room_left = dut.row_collector_i.room;
+wire [7:0] rows_left = dut.row_collector_i.rows_left;
 always @* if (known) begin
     assert (state == (drawing ? 2 : begins ? 1 : 0) && !(begins && (drawing || waits)));
     assert (dut.frame_switch_i.ready == waits && dut.frame_switch_i.drawn_run == !black);
     assert (dut.whole == completes && dut.row_dealer_i.busy == at_work);
     if (begins) assert ($past(start_screen));
     if (drawing) assert (!waits && !black);
-    if (drawing) assert (rows_left + rows_taken == ROWS && room_left + entries_taken == ENTRIES);
-    if (drawing) assert (dut.row_collector_i.next_place == first + entries_taken);
+    if (drawing) assert (rows_left + rows_taken == ROWS && entries_taken <= ENTRIES);
+    if (drawing) assert (dut.row_collector_i.next_place == entries_taken);
     else assert (rows_left == 0 && !write);
     assert (dut.row_collector_i.collecting == (rows_left != 0));
-    if (drawing) assert (dut.row_collector_i.fits == (room_left != 0));
+    if (drawing) assert (dut.row_collector_i.fits == (entries_taken != ENTRIES));
     if (waits && !black) assert (whole[upper]);
     if (drawing && settled) assert (dut.row_dealer_i.left + dealt == ROWS && dut.row_dealer_i.turn == dealt % UNITS);
     else assert (dut.row_dealer_i.left == 0 && (!drawing || dealt == 0));

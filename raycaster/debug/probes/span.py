@@ -486,9 +486,6 @@ class SpanProbes(Description):
             # The right one of two pixels may see the next entry.
             return (None if ray.lane else sight_of(ray).place,)
 
-        def of_list(ray: Ray, place: Place, number: int) -> Sequence[int]:
-            return (number % config.list,)
-
         def of_lane(ray: Ray, place: Place, pixels: int) -> Sequence[int]:
             bits = 3 * config.colour_bits
             return (pixels >> ray.lane * bits & (1 << bits) - 1,)
@@ -540,8 +537,8 @@ class SpanProbes(Description):
                 if config.units > 1 else ()),
             make("entry of the list", "listed", COLLECTOR, "end pixel", self._listed, "entry", late=1),
             Probe("its place", (f"{COLLECTOR}.place",), "listed", lambda ray, _: (sight_of(ray).place,), late=1,
-                decode=of_list, **hidden),
-            Probe("place shown", (f"{PLAYER}.row_place_i.place",), "shown", in_list, late=-1, decode=of_list, **hidden),
+                **hidden),
+            Probe("place shown", (f"{PLAYER}.row_place_i.place",), "shown", in_list, late=-1, **hidden),
             Probe("pixel of the list", (f"{PLAYER}.shown",), "shown", lambda ray, _: (ray.pixel,), decode=of_lane,
                 colour=True, narrow=True),
             *monitor_probes(RENDERER, "shown", VIDEO, config),

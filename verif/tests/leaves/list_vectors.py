@@ -184,7 +184,6 @@ class Collector:
     rows: int
     units: int
     entries: int
-    first: int = 0
     rows_left: int = 0
     taken: list[Run] = field(default_factory=list)
     written: tuple[int, Run, bool] | None = None
@@ -200,17 +199,17 @@ class Collector:
     def full(self, head: Run | None) -> bool:
         return head is not None and self.rows_left > 0 and len(self.taken) == self.entries
 
-    def clock(self, new_frame: bool, first: int, head: Run | None, reset: bool) -> None:
+    def clock(self, new_frame: bool, head: Run | None, reset: bool) -> None:
         """End the cycle."""
         self.written = None
         if self.take(head) and not reset:
             assert head is not None
             ends = head[0] == self.columns
-            self.written = self.first + len(self.taken), head, ends and self.rows_left == 1
+            self.written = len(self.taken), head, ends and self.rows_left == 1
             self.taken.append(head)
             self.rows_left -= ends
         if new_frame:
-            self.first, self.rows_left, self.taken = first, self.rows, []
+            self.rows_left, self.taken = self.rows, []
         if reset:
             self.rows_left = 0
 

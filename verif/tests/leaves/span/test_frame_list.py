@@ -89,7 +89,7 @@ def test_frame_list(units, pixels, doubling, clocks, queue, pace, leaf_of, rando
             queues[number].clock(offered[number], bool(number == collector.turn and take and units > 1), cleared)
             drawer.clock(taken, frame[dealer.row] if start == number else None, cleared)
         dealer.clock(bool(new_frame), start, done, dropped)
-        collector.clock(bool(new_frame), ENTRIES * switch.upper, head, dropped)
+        collector.clock(bool(new_frame), head, dropped)
         if new_frame:
             frame = any_frame(random, COLUMNS, ROWS, ENTRIES)
             slow = 1 - ENTRIES / units / beam.period

@@ -29,7 +29,7 @@ def test_list_player(entries, bank, pixels, doubling, clocks, leaf_of, random):
         cycle, scan = leaf.cycle, beam.scan()
         write = bool(runs) and random.random() < 0.5
         leaf.case({"reset": 0, **named("scan", scan), "upper": upper, "view_run": view_run, "write": write})
-        leaf.stimulus[-1] |= {"write_place": upper * entries + place} | entry("written", runs[0] if runs else (0, 0))
+        leaf.stimulus[-1] |= {"write_place": place} | entry("written", runs[0] if runs else (0, 0))
         if beam.place:
             row, column = beam.place
             view = frames[1 - upper]

@@ -16,7 +16,7 @@ def test_row_collector(units, pause, leaf_of, random):
     width = entry_bits(ENTRIES)
     made = {name: lambda: ListEntry(COLUMNS, PIXEL_BITS) for name in ("head", "entry")}
     sizes = {"columns": COLUMNS, "rows": ROWS, "units": units, "entries": ENTRIES}
-    ports = {"offered": bit, "first": width, "place": width, "turn": bits_for(units)}
+    ports = {"offered": bit, "place": width, "turn": bits_for(units)}
     leaf = leaf_of(row_collector, **sizes, **ports, **made)
     model = Collector(**sizes)
     leaf.case({"reset": 1})
@@ -24,10 +24,9 @@ def test_row_collector(units, pause, leaf_of, random):
     for _ in range(3000):
         reset = int(leaf.cycle > 1 and random.random() < 0.005)
         new_frame = int(leaf.cycle == 1 or (not reset and model.rows_left == 0 and random.random() < 0.3))
-        first = int(random.choice([0, ENTRIES, random.integers(ENTRIES)]))
         head = runs[0] if runs and random.random() >= pause else None
         full = model.full(head)
-        leaf.case({"reset": reset or int(full), "new_frame": new_frame, "first": first, "offered": head is not None})
+        leaf.case({"reset": reset or int(full), "new_frame": new_frame, "offered": head is not None})
         leaf.stimulus[-1] |= entry("head", head or (int(random.integers(COLUMNS + 1)), 0))
         leaf.expect({"take": model.take(head), "full": full, "write": model.written is not None})
         leaf.expect({"whole": model.written is not None and model.written[2]})
@@ -40,7 +39,7 @@ def test_row_collector(units, pause, leaf_of, random):
             runs.pop(0)
         if full:
             ends.add("full")
-        model.clock(bool(new_frame), first, head, bool(reset or full))
+        model.clock(bool(new_frame), head, bool(reset or full))
         if new_frame:
             # After the frame comes a run that belongs to none.
             runs = [run for _ in range(ROWS + 1) for run in any_row(random, COLUMNS)]

@@ -12,7 +12,7 @@ BITS, COLUMNS = 5, 4
 
 @by(pixels=[1, 2], clocks=[1, 2], doubling=[1, 3])
 def test_row_place(pixels, doubling, clocks, leaf_of, random):
-    leaf = leaf_of(row_place, scan=Scan, first=BITS, taken=2, place=BITS)
+    leaf = leaf_of(row_place, scan=Scan, taken=2, place=BITS)
     beam, rows = Beam(list_screen(COLUMNS, 3, doubling, clocks), pixels), 0
 
     def line(begin: int, length: int):
@@ -24,7 +24,7 @@ def test_row_place(pixels, doubling, clocks, leaf_of, random):
             yield begin, taken
             begin, length = begin + taken, length - taken
 
-    row = length = first = view_run = playing = visible = place = 0
+    row = length = view_run = playing = visible = place = 0
     played, coming, leaving, restarts = iter(()), {}, set(), {}
     leaf.case({"reset": 1})
     for _ in range(leaf.some(60) * beam.period):
@@ -42,17 +42,17 @@ def test_row_place(pixels, doubling, clocks, leaf_of, random):
             played = line(row, length) if playing else iter(())
         if playing and scan["next_column"]:
             place, taken = next(played)
-        leaf.case({"reset": reset, **named("scan", scan), "first": first, "view_run": view_run, "taken": taken})
+        leaf.case({"reset": reset, **named("scan", scan), "view_run": view_run, "taken": taken})
         restart = restarts.pop(cycle, 0)
         leaf.expect({"playing": playing, "restart": restart})
         leaf.expect({"place": row % (1 << BITS)}, when=restart and not (coming or leaving))
         leaf.expect({"place": place % (1 << BITS)}, when=taken)
         beam.clock(bool(reset))
-        # Both inputs change in the cycle after StartScreen.
+        # It changes in the cycle after StartScreen.
         if scan["start_screen"]:
-            view_run, first = int(random.random() < 0.8), int(random.integers(1 << BITS))
+            view_run = int(random.random() < 0.8)
             leaving.add(cycle + 2)
-            row, length = first, 0
+            row = length = 0
         if scan["start_row"]:
             coming[cycle + 2] = row + length, int(random.integers(1, COLUMNS + 1)), view_run
             restarts[cycle + 2] = view_run

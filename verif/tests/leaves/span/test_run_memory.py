@@ -21,8 +21,11 @@ def test_run_memory(places, bank, leaf_of, random):
         place = cycle if cycle < places else int(random.integers(places))
         read = int(random.choice([0, places - 1, cycle % places, random.integers(places)]))
         run = (int(random.integers(10)), int(random.integers(1 << PIXEL_BITS)))
-        leaf.case({"write": write, "write_place": place, **entry("written", run), "read_place": read})
-        if read in held and not (write and place == read):
+        reads = int(cycle < places or random.random() < 0.8)
+        leaf.case({"write": write, "write_place": place, **entry("written", run), "read": reads, "read_place": read})
+        if not reads:
+            leaf.expected[cycle + latency] |= entry("shown", (0, 0))
+        elif read in held and not (write and place == read):
             leaf.expected[cycle + latency] |= entry("shown", held[read])
         if write:
             held[place] = run

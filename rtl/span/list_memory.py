@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: MIT
+"""The memories of two lists, of which one is drawn and the other one is shown."""
+
+from myhdl import always_comb, block, instances
+
+from raycaster.hdl.signals import bit, unsigned
+from raycaster.rtl.span.run_memory import BANK_PLACES, run_memory
+
+
+@block
+def list_memory(
+    clk, upper, write, write_place, written, read_place, shown, places: int, bank: int = BANK_PLACES
+):  # fmt: skip
+    """Keep the runs of two lists, each in a memory that is either written or read.
+
+    Both places of a memory are the same, so RAM with a single port will do.
+
+    Args:
+        upper: flag; the upper list is written and the lower one is read, or the other way round.
+        write: strobe; stores written.
+        write_place: unsigned, below places; read with write.
+        written: `ListEntry`; read with write.
+        read_place: unsigned, below places.
+        shown: `ListEntry`; output, the run at read_place `read_latency` cycles later. Don't care if upper has changed
+            in between.
+        places: number of runs of each list.
+        bank: number of runs of a bank of a memory, as in `run_memory`.
+    """
+    lower_write, upper_write, lower_read, upper_read = (bit() for _ in range(4))
+    lower_write_place, lower_read_place = (unsigned(len(read_place)) for _ in range(2))
+    upper_write_place, upper_read_place = (unsigned(len(read_place)) for _ in range(2))
+    lower_run, upper_run = written.twin(), written.twin()
+
+    lower_list = run_memory(
+        clk, write=lower_write, write_place=lower_write_place, written=written, read=lower_read,
+        read_place=lower_read_place, shown=lower_run, places=places, bank=bank,
+    )  # fmt: skip
+    upper_list = run_memory(
+        clk, write=upper_write, write_place=upper_write_place, written=written, read=upper_read,
+        read_place=upper_read_place, shown=upper_run, places=places, bank=bank,
+    )  # fmt: skip
+
+    @always_comb
+    def choose():
+        lower_write.next = write and not upper
+        upper_write.next = write and upper
+        lower_read.next = upper
+        upper_read.next = not upper
+        lower_write_place.next = write_place
+        lower_read_place.next = write_place
+        upper_write_place.next = read_place
+        upper_read_place.next = read_place
+        if upper:
+            lower_write_place.next = read_place
+            lower_read_place.next = read_place
+            upper_write_place.next = write_place
+            upper_read_place.next = write_place
+
+    @always_comb
+    def show():
+        shown.word.next = lower_run.word | upper_run.word
+
+    return instances()
