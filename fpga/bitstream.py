@@ -35,7 +35,16 @@ from raycaster.design.options import CommandParser, add_configuration_options, a
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import OpenBoard, board_names, find_board
-from raycaster.fpga.flows import FLOWS, OTHER_MEMORIES, Clocks, Flow, clocks_for, largest_list, place_and_route
+from raycaster.fpga.flows import (
+    FLOWS,
+    OTHER_MEMORIES,
+    Clocks,
+    Flow,
+    clocks_for,
+    largest_list,
+    list_in_single_ports,
+    place_and_route,
+)
 from raycaster.fpga.netlist import write_netlist
 from raycaster.golden.frames import check_list, scene_rows
 from raycaster.memory_map import MEMORY_WORDS, PROGRAM_FILE
@@ -329,6 +338,8 @@ AnyDesign = TypeVar("AnyDesign", Design, ProcessorDesign)
 def with_list(board: OpenBoard, design: AnyDesign, options: Mapping[str, Any]) -> AnyDesign:
     """Return a design with the largest lists that fit the board's chip, if they are shorter than the usual ones.
 
+    Lists that do not fit the block RAM fill the RAMs with a single port, if the chip has them.
+
     Raises:
         UserError: the chip's block RAM holds no lists, or less than those that the options ask for.
     """
@@ -340,6 +351,10 @@ def with_list(board: OpenBoard, design: AnyDesign, options: Mapping[str, Any]) -
         words = longest_frame(config) if BUSES[config.bus].serial else 0
     program = -(-words // places) * -(-WORD_BITS // width)
     most = largest_list(board, config, OTHER_MEMORIES + program)
+    if config.list > most and (larger := list_in_single_ports(board, config)):
+        if "list" not in options or config.list <= larger:
+            return replace(design, configuration=replace(config, list=larger))
+        most = larger
     rows = config.screen_geometry.rows
     if most < rows or ("list" in options and config.list > most):
         asked = config.list if "list" in options else rows

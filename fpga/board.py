@@ -203,6 +203,8 @@ class OpenBoard(Board):
     """Number of the chip's multipliers, from its maker's data sheet; excess products become logic."""
     memories: int
     """Number of the chip's RAM blocks, from the same data sheet."""
+    single_ports: int = 0
+    """Number of the chip's larger RAMs with a single port, from the same data sheet."""
     clock_mhz: float
     video: Literal["dvi", "parallel"]
     """Kind of output: a DVI link driven by the chip itself, or colours and syncs for a DAC or a transmitter."""

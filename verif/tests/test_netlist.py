@@ -53,6 +53,10 @@ LIGHT = "[light]\nposition = [60, 100, 300]\n"
             ("SB_LUT4", "SB_MAC16", "SB_RAM40_4K"),
         ),
         (
+            "ice40", "--engine span --rectangles 3 --reflections 1 --list 16384", "",
+            ("SB_LUT4", "SB_MAC16", "SB_RAM40_4K", "SB_SPRAM256KA"),
+        ),
+        (
             "gowin", "--engine span --rectangles 3 --reflections 1", "",
             ("LUT4", "ALU", "DFFRE", "MULT18X18", "SDPX9B"),
         ),
@@ -61,7 +65,7 @@ LIGHT = "[light]\nposition = [60, 100, 300]\n"
             ("LUT4", "CCU2C", "MULT18X18D", "TRELLIS_DPR16X4", "DP16KD"),
         ),
     ],
-    ids=["ecp5", "ice40", "gowin", "units"],
+    ids=["ecp5", "ice40", "single-port", "gowin", "units"],
 )  # fmt: skip
 def test_frame(tmp_path, cells, options, light, some):
     """The netlist that is placed draws every pixel: each engine, the exact one with a light, spans with two units.
