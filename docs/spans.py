@@ -50,7 +50,7 @@ CLOCKS = 25_000_000 / 60 / 240
 """Clock cycles that a row has."""
 
 
-class Told(Drawing):
+class ExampleRow(Drawing):
     """A row that is drawn, with the entries of each chain."""
 
     def __init__(self, model: SpanModel):
@@ -66,9 +66,9 @@ class Told(Drawing):
         return entries
 
 
-def told() -> Told:
+def example_row() -> ExampleRow:
     """Return the example row."""
-    return Told(SpanModel.of_scene(SCENE, SCREEN))
+    return ExampleRow(SpanModel.of_scene(SCENE, SCREEN))
 
 
 def name_of(entry: Entry) -> str:
@@ -89,7 +89,7 @@ def rectangles() -> str:
 def entries() -> str:
     """Table of the entries of the example row."""
     rows = []
-    for chain, found in told().chains:
+    for chain, found in example_row().chains:
         where = f"eye {chain.eye}, columns {chain.start} to {chain.stop - 1}"
         for entry in found:
             at_0, growth = entry.ahead
@@ -101,7 +101,7 @@ def entries() -> str:
 def runs() -> str:
     """The runs of the example row, in words."""
     start, words = 0, []
-    for end, colour in told().result.runs:
+    for end, colour in example_row().result.runs:
         words.append(f"{start} to {end - 1} `{_hex(colour)}`")
         start = end
     return ", ".join(words)
@@ -118,7 +118,7 @@ def _shares(colour: tuple[int, ...]) -> tuple[float, ...]:
 @styled
 def row_picture() -> Figure:
     """Draw the example row: its entries as bars, in each chain, above the runs."""
-    row = told()
+    row = example_row()
     figure, axes = new_figure(2.6)
     ax: Axes = axes[0, 0]
     place, names = 0, []

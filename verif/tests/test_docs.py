@@ -74,7 +74,7 @@ def test_the_example_module_works(leaf_of, random, tmp_path: Path, monkeypatch):
 def test_the_example_row_is_drawn_so():
     """The exact model draws the runs that the page about spans follows by hand."""
     picture, start = ExactModel().render(spans.SCENE, spans.SCREEN), 0
-    for end, colour in spans.told().result.runs:
+    for end, colour in spans.example_row().result.runs:
         assert (picture[spans.ROW, start:end] == colour).all()
         start = end
 
