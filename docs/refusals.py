@@ -133,9 +133,6 @@ REFUSALS = (
             _process("result.next = b\nif a != 0:\n    result.next = a")),
     Refusal("latch", _process("if index[0]:\n    result.next = a  # refused"),
             _process("result.next = b\nif index[0]:\n    result.next = a")),
-    Refusal("table", _process("result.next = a ^ numbers[index]  # refused", "numbers = (3, 1, 4, 1)\n"),
-            _process("result.next = a ^ looked_up", "numbers = (3, 1, 4, 1)\nlooked_up = unsigned(4)\n"
-                     "@always_comb\ndef look_up():\n    looked_up.next = numbers[index]\n")),
     Refusal("copy", _process("result[4:2].next = index  # refused\nresult.next[2:] = index"),
             _process("result.next[4:2] = index\nresult.next[2:] = index")),
     Refusal("loop", _process("result.next = a\nfor i in range(index):  # refused\n    result.next = b"),
@@ -147,7 +144,7 @@ REFUSALS = (
             "@always(clk.posedge)\ndef empty():\n    words[b[2:]].next = 0\n" + _process("result.next = words[index]"),
             "words = [unsigned(4) for _ in range(4)]\n@always(clk.posedge)\ndef fill():\n    words[index].next = a\n"
             "    words[b[2:]].next = 0\n" + _process("result.next = words[index]")),
-    Refusal("rounded", _process("result.next = apart // 2  # refused", APART),
+    Refusal("rounded", _process("result.next = apart // (index + 1)  # refused", APART),
             _process("result.next = apart[5:1]", APART)),
     Refusal("undriven", _process("result.next = a ^ nothing", "nothing = unsigned(4)  # refused\n"),
             _process("result.next = a ^ nothing", "nothing = tied(0, 4)\n")),

@@ -497,7 +497,7 @@ class Expressions:
                 return _shape(self._object(node))
             case ast.Subscript() if (table := table_of(self._object(node.value))) is not None:
                 around = Range(min(table), max(table))
-                return around.bits(around.low < 0), around.low < 0
+                return max(around.bits(around.low < 0), 1), around.low < 0
             case ast.Subscript():
                 return 1, False
             case ast.Call() if _called(node) == intbv.signed and isinstance(node.func, ast.Attribute):
@@ -588,6 +588,9 @@ class Expressions:
             else 1 + signed
             for leaf, constant in constants
         ]  # fmt: skip
+        for part in (part for node in nodes for part in ast.walk(node)):
+            if isinstance(part, ast.BinOp) and (times := self._times(part)):
+                widths.append(Range(0, self.range(part.left).high + times * self.range(part.right).low).bits(True))
         return Context(max([bits or 0, *widths]), signed)
 
     def _is_negative(self, node: ast.expr, needed: int | None) -> bool:
@@ -676,6 +679,13 @@ class Expressions:
         if power is not None and (dividend.low < 0 or dividend.bits(context.signed) > context.bits):
             left = self._emit(node.left, context, power)
             return f"({left} & {self._number(node, (1 << power) - 1, context)})"
+        if times := self._times(node):
+            left, right = (self._emit(side, context, None) for side in (node.left, node.right))
+            distance = (
+                f"{context.bits}'sh{times * divisor.low:x}" if context.bits > INTEGER_BITS else times * divisor.low
+            )
+            text = f"(({left} + {distance}) {SYMBOLS[type(node.op)]} {right})"
+            return text if isinstance(node.op, ast.Mod) else f"({text} - {self._number(node, times, context)})"
         if power is None and min(dividend.low, divisor.low) < 0:
             self.refuse(
                 node, "a side may be below 0, where Verilog rounds up and Python down; shift to the right, or take bits"
@@ -683,6 +693,14 @@ class Expressions:
         left = self._emit(node.left, context, power)
         right = f"(1 << {power})" if 16 < (power or 0) < 31 else self._emit(node.right, context, None)
         return f"({left} {SYMBOLS[type(node.op)]} {right})"
+
+    def _times(self, node: ast.AST) -> int:
+        """Return by how many divisors a dividend is moved to be 0 or more, as Verilog rounds up below 0; mostly 0."""
+        if not isinstance(node, ast.BinOp) or not isinstance(node.op, (ast.Mod, ast.FloorDiv)):
+            return 0
+        dividend, divisor = self.range(node.left), self.range(node.right)
+        power = isinstance(node.op, ast.Mod) and self._power(node.right) is not None
+        return -(min(dividend.low, 0) // divisor.low) if not power and divisor.low == divisor.high > 0 else 0
 
     def _number(self, node: ast.expr, value: Any, context: Context) -> str:
         """Return a constant; a name of True or False is a bit."""
@@ -793,14 +811,17 @@ class Expressions:
                 return self._bits(node, lower, upper)
             case ast.Subscript(value=value, slice=index):
                 known = self._object(value)
-                if table_of(known) is not None:
-                    self.refuse(node, f"Verilog has no tables in expressions; assign {ast.unparse(node)} to a signal")
                 if isinstance(known, tuple):
                     self.refuse(node, f"{ast.unparse(value)} is a tuple, and Verilog has tables of numbers only; "
                                 "use a list of signals, or if and elif")  # fmt: skip
                 around = self.range(index)
                 if around.low < 0:
                     self.refuse(node, "the index may be below 0; give it a range without a sign")
+                if (table := table_of(known)) is not None:
+                    place, (bits, signed) = self._root(index, None), self._type(node)
+                    values = [f"{bits}'{'s' * signed}h{value % (1 << bits):x}" for value in table]
+                    choices = [f"{place} == {number} ? {value} : " for number, value in enumerate(values[:-1])]
+                    return f"({''.join(choices)}{values[-1]})"
                 if is_memory(known):
                     return f"{self._place(value)}[{self.text(index)}]"
                 bits, _ = self._type(value)

@@ -677,6 +677,23 @@ def conditions_and_loops_bound_indices(a, i, k, y, n, found, half, top, some, la
     return instances()
 
 
+@program(a=-5, i=2, y=5, n=-7, z=-12, w=-8)
+def tables_and_quotients_below_0(a, i, y, n, z, w):
+    weights, powers = [-8, 3, 0, 7], {"base": 1, "step": 3}
+
+    @always_comb
+    def go():
+        y.next = (a - powers["step"]) % 10
+        n.next = (a - max(powers["base"], 3)) // 3
+        w.next = weights[i] * 2 + (weights[1] - (3, 1, 4, 1)[2])
+        total = intbv(0, min=-2048, max=2048)
+        for k in range(4):
+            total += (a + k) * weights[3 - k]
+        z.next = total
+
+    return instances()
+
+
 @program(clk=1, go=1, y=2)
 def a_state_in_all_cases(clk, go, y):
     state = Signal(STATES.IDLE)
