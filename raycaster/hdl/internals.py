@@ -121,18 +121,8 @@ def analysed(processes: Iterable[Process], prepare: Callable[[Any], None]) -> li
         names = {id(process.symdict[name]): name for name in process.outputs if name in process.symdict}
         getattr(process, "sigregs", []).sort(key=lambda signal, names=names: names.get(id(signal), ""))
     _genUniqueSuffix.reset()
-    before = _analyze._FirstPassVisitor
-
-    class _FirstPass(before):
-        def visit_Module(self, node: Any) -> None:
-            prepare(node)
-            self.generic_visit(node)
-
-    _analyze._FirstPassVisitor = _FirstPass
-    try:
+    with _prepared(prepare):
         trees = _analyze._analyzeGens(processes, {id(process): process.name for process in processes})
-    finally:
-        _analyze._FirstPassVisitor = before
     for tree, process in zip(trees, processes, strict=True):
         _add_inputs(tree)
         for name in process.outputs if getattr(tree, "reset", None) is not None else ():
@@ -146,6 +136,29 @@ def analysed(processes: Iterable[Process], prepare: Callable[[Any], None]) -> li
     return trees
 
 
+@contextmanager
+def _prepared(prepare: Callable[[Any], None]) -> Iterator[None]:
+    """Make a context in which MyHDL analyses prepared trees, and takes bits joined by an operator as a bit."""
+    first, analyse = _analyze._FirstPassVisitor, _analyze._AnalyzeVisitor.visit_BinOp
+
+    class FirstPass(first):
+        def visit_Module(self, node: Any) -> None:
+            prepare(node)
+            self.generic_visit(node)
+
+    def visit_BinOp(self: Any, node: Any) -> None:
+        analyse(self, node)
+        bits = all(_analyze.hasType(getattr(side, "obj", None), bool) for side in (node.left, node.right))
+        if bits and isinstance(node.op, (ast.BitAnd, ast.BitOr, ast.BitXor)):
+            node.obj = False
+
+    _analyze._FirstPassVisitor, _analyze._AnalyzeVisitor.visit_BinOp = FirstPass, visit_BinOp
+    try:
+        yield
+    finally:
+        _analyze._FirstPassVisitor, _analyze._AnalyzeVisitor.visit_BinOp = first, analyse
+
+
 def _add_inputs(tree: Any) -> None:
     """Add to what a process or a function reads what MyHDL leaves out: behind `len`, in calls, and in functions."""
     nodes: list[Any] = [node for line in tree.body[0].body for node in ast.walk(line)]
@@ -157,7 +170,8 @@ def _add_inputs(tree: Any) -> None:
         _add_inputs(call.tree)
         for name in signals_read_around(call.tree):
             tree.inputs.add(name)
-            tree.sigdict.setdefault(name, call.tree.symdict[name])
+            for known in (tree.sigdict, tree.symdict):
+                known.setdefault(name, call.tree.symdict[name])
 
 
 def assigned(tree: Any) -> bool:

@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import ast
+import inspect
 from itertools import pairwise
+from types import FunctionType
 from typing import Any
 
-from raycaster.hdl.internals import EnumItemType, EnumType
+from raycaster.hdl.internals import EnumItemType, EnumType, SignalType
 
 PYTHON = {one.__name__: one for one in (len, isinstance, int, bool, abs, min, max, round)}
 """Functions and types of Python in expressions of constants."""
@@ -27,9 +29,22 @@ def prepare(tree: Any) -> None:
     """
     _Decided(tree).visit(tree)
     _check(tree)
-    for name, value in tree.symdict.items():
+    for name in {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} & {*tree.symdict}:
+        value = tree.symdict[name]
         if isinstance(value, list) and value and all(isinstance(one, int) for one in value):
             tree.symdict[name] = tuple(value)  # a table, as nothing assigns to its elements
+        elif isinstance(value, FunctionType):
+            tree.symdict[name] = _opened(value)
+
+
+def _opened(function: FunctionType) -> FunctionType:
+    """Return a function that has the constants and functions around it as names of its module, as MyHDL wants them."""
+    around = inspect.getclosurevars(function).nonlocals
+    known = (FunctionType, EnumType, SignalType)
+    if not around or not all(isinstance(value, known) or _is_plain(value) for value in around.values()):
+        return function
+    code = function.__code__.replace(co_freevars=())
+    return FunctionType(code, {**function.__globals__, **around}, function.__name__)
 
 
 class _Decided(ast.NodeTransformer):

@@ -200,18 +200,23 @@ def _part(part: Any, contents: Contents, comments: Comments, functions: dict[str
 
 
 def _statements(
-    tree: Any, contents: Contents, functions: dict[str, str], arguments: Mapping[str, Range] | None = None
+    tree: Any,
+    contents: Contents,
+    functions: dict[str, str],
+    arguments: Mapping[str, Range] | None = None,
+    keeps: bool = False,
 ) -> Statements:
     """Return the printer of a process or a function, which adds to `functions` those that it calls, by name."""
+    keeps = keeps or internals.keeps(tree)
 
     def name_of(called: Any, ranges: Sequence[Range]) -> str:
         for name in (*called.argnames, *called.vardict):
             check_keyword(contents.block, name)
-        if not internals.keeps(tree) and (read := internals.signals_read_around(called)):
+        if not keeps and (read := internals.signals_read_around(called)):
             raise refusal(contents.block, f"{called.body[0].name} reads {read[0]}, for which nothing waits in MyHDL; "
                           "make it an argument", read[0])  # fmt: skip
         given = dict(zip(called.argnames, ranges, strict=True))
-        text = _statements(called, contents, functions, given).printed_function("\0")
+        text = _statements(called, contents, functions, given, keeps).printed_function("\0")
         known = next((name for name, other in functions.items() if other == text), None)
         name = known or contents.free(called.body[0].name)
         functions[name] = text

@@ -694,6 +694,39 @@ def tables_and_quotients_below_0(a, i, y, n, z, w):
     return instances()
 
 
+@program(clk=1, a=4, b=4, y=6, parity=1, carry=1, kept=4)
+def functions_and_bits_of_the_block(clk, a, b, y, parity, carry, kept):
+    mode, table = "odd", (3, 1, 2, 9)
+
+    def more(x):
+        return x + 1 if mode == "odd" else x[9]
+
+    def twice(x):
+        return more(more(x)) + table[x % 4]
+
+    def mixed(x):
+        return x ^ b
+
+    def flipped(x):
+        return mixed(x) ^ 1
+
+    @always_comb
+    def add():
+        y.next = twice(a) + more(b)
+        odd = a[0] ^ a[1]
+        chain = False
+        for k in range(4):
+            chain = (a[k] & b[k]) | (chain & (a[k] ^ b[k]))
+        carry.next = chain
+        parity.next = (odd ^ a[2]) and not (b[0] | b[1])
+
+    @always(clk.posedge)
+    def keep():
+        kept.next = flipped(a)
+
+    return instances()
+
+
 @program(clk=1, go=1, y=2)
 def a_state_in_all_cases(clk, go, y):
     state = Signal(STATES.IDLE)
