@@ -21,7 +21,7 @@ from raycaster.hdl.contents import Connection, Contents, Instance, Loading, Modu
 from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.errors import UserError, faults_in_one_line
 from raycaster.hdl.given import GivenVerilog, load_words
-from raycaster.hdl.internals import Block, SignalType, SliceSignal, bits_of, drivers_of, operands_of
+from raycaster.hdl.internals import Block, SignalType, SliceSignal, around, bits_of, drivers_of, operands_of
 from raycaster.hdl.records import Field, block_arguments, block_ports, is_interface, signals_in
 from raycaster.hdl.signals import Tied, Unconnected
 from raycaster.hdl.verilog_style import module_text, number
@@ -249,7 +249,7 @@ class _Converter:
                 return [beginning(element) for element in value]
             parts = []
             if inspect.isfunction(value):
-                parts = list(inspect.getclosurevars(value).nonlocals.values())
+                parts = list(around(value).values())
             elif type(value).__eq__ is object.__eq__:
                 parts = list(getattr(value, "__dict__", {}).values())
             else:

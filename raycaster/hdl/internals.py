@@ -7,6 +7,7 @@ No other file of the package touches them. They may change with any version of M
 import ast
 import functools
 import importlib
+import inspect
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, nullcontext
@@ -115,6 +116,7 @@ def analysed(processes: Iterable[Process], prepare: Callable[[Any], None]) -> li
     """
     processes = list(processes)
     for process in processes:
+        around(process.funcobj)
         for signal in process.sigdict.values():
             signal._driven = None  # MyHDL refuses a second driver, but the first may be in a module converted before
         # Registers to reset come in the order of a Python set, which changes from run to run.
@@ -136,6 +138,16 @@ def analysed(processes: Iterable[Process], prepare: Callable[[Any], None]) -> li
     return trees
 
 
+def around(function: Any) -> dict[str, Any]:
+    """Return what a function reads around it, by name; None for a name that was never bound, as MyHDL reads all."""
+    for cell in function.__closure__ or ():
+        try:
+            cell.cell_contents  # noqa: B018 - an empty cell raises
+        except ValueError:
+            cell.cell_contents = None
+    return dict(inspect.getclosurevars(function).nonlocals)
+
+
 @contextmanager
 def _prepared(prepare: Callable[[Any], None]) -> Iterator[None]:
     """Make a context in which MyHDL analyses prepared trees, and takes bits joined by an operator as a bit."""
@@ -152,11 +164,19 @@ def _prepared(prepare: Callable[[Any], None]) -> Iterator[None]:
         if bits and isinstance(node.op, (ast.BitAnd, ast.BitOr, ast.BitXor)):
             node.obj = False
 
+    def visit_IfExp(self: Any, node: Any) -> None:
+        self.generic_visit(node)
+        one, other = (getattr(side, "obj", None) for side in (node.body, node.orelse))
+        alike = isinstance(one, EnumItemType) or all(_analyze.hasType(side, bool) for side in (one, other))
+        node.obj = getattr(one, "val", one) if alike else -1
+
     _analyze._FirstPassVisitor, _analyze._AnalyzeVisitor.visit_BinOp = FirstPass, visit_BinOp
+    _analyze._AnalyzeVisitor.visit_IfExp = visit_IfExp
     try:
         yield
     finally:
         _analyze._FirstPassVisitor, _analyze._AnalyzeVisitor.visit_BinOp = first, analyse
+        del _analyze._AnalyzeVisitor.visit_IfExp
 
 
 def _add_inputs(tree: Any) -> None:

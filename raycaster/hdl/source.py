@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 import ast
-import inspect
 from itertools import pairwise
 from types import FunctionType
 from typing import Any
 
-from raycaster.hdl.internals import EnumItemType, EnumType, SignalType
+from raycaster.hdl.internals import EnumItemType, EnumType, SignalType, around
 
 PYTHON = {one.__name__: one for one in (len, isinstance, int, bool, abs, min, max, round)}
 """Functions and types of Python in expressions of constants."""
@@ -39,12 +38,11 @@ def prepare(tree: Any) -> None:
 
 def _opened(function: FunctionType) -> FunctionType:
     """Return a function that has the constants and functions around it as names of its module, as MyHDL wants them."""
-    around = inspect.getclosurevars(function).nonlocals
-    known = (FunctionType, EnumType, SignalType)
-    if not around or not all(isinstance(value, known) or _is_plain(value) for value in around.values()):
+    values, known = around(function), (FunctionType, EnumType, SignalType)
+    if not values or not all(isinstance(value, known) or _is_plain(value) for value in values.values()):
         return function
     code = function.__code__.replace(co_freevars=())
-    return FunctionType(code, {**function.__globals__, **around}, function.__name__)
+    return FunctionType(code, {**function.__globals__, **values}, function.__name__)
 
 
 class _Decided(ast.NodeTransformer):

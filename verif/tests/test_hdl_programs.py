@@ -609,10 +609,12 @@ def a_loop_in_a_branch(a, s, y, z):
 @program(clk=1, reset=reset_signal, a=4, y=4, z=4, kept=4)
 def branches_that_constants_decide(clk, reset, a, y, z, kept):
     mode, wide, extra, unused = "plain", False, None, Signal(intbv(5)[4:])
+    if wide:
+        absent = unsigned(4)
 
     def flipped(x):
         if wide:
-            return x[9]
+            return absent
         return x ^ 1
 
     @always_comb
@@ -702,7 +704,10 @@ def functions_and_bits_of_the_block(clk, a, b, y, parity, carry, kept):
         return x + 1 if mode == "odd" else x[9]
 
     def twice(x):
-        return more(more(x)) + table[x % 4]
+        return more(more(x)) + (table[x % 4] if x > 3 else 2)
+
+    def least(x):
+        return x - 3 if x > 3 else 0
 
     def mixed(x):
         return x ^ b
@@ -712,7 +717,7 @@ def functions_and_bits_of_the_block(clk, a, b, y, parity, carry, kept):
 
     @always_comb
     def add():
-        y.next = twice(a) + more(b)
+        y.next = twice(a) + more(b) - least(a)
         odd = a[0] ^ a[1]
         chain = False
         for k in range(4):
