@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import islice, pairwise
+from itertools import islice, pairwise, zip_longest
+from math import log1p
 
 import numpy as np
 import pytest
@@ -36,10 +37,22 @@ DESIGNS = [
     span_config(**TINY, reflections=4, turn=True, materials=True, patterns=True, light=True),
 ]
 
-QUICK = 1
-"""Frames of each design, if slow tests are left out."""
+ROWS = 2
+"""Rows of each frame that are drawn, if slow tests are left out or rows are long."""
 
 SCENES = {name: load_scene(path) for name, path in sorted(packaged_scenes().items())}
+
+
+def busy_frames(
+    random: np.random.Generator, config: Configuration, number: int = 1, rectangles: int | None = None
+) -> list[Frame]:
+    """Return the frames whose first rows take many steps of each kind; most random frames show little."""
+
+    def work(frame: Frame) -> float:
+        screen = config.screen_geometry
+        return sum(map(log1p, next(frame.model(screen).rows(screen, frame.basis)).steps.values()))
+
+    return sorted((any_frame(random, config, rectangles) for _ in range(12)), key=work)[-number:]
 
 
 def unit_bench(leaf_of, config: Configuration):
@@ -60,15 +73,15 @@ def drawn(
         frames: frames to draw.
         ready: returns whether a run is taken in the next cycle.
         most: number of rows to draw, all by default.
-        cuts: cycles after which a reset ends the first frame, each time it begins.
+        cuts: for each frame, cycles after which a reset ends it, before it is drawn as a whole.
     """
     screen = leaf.screen
     count = most or screen.rows
     expected = [list(islice(frame.model(screen).rows(screen, frame.basis), count)) for frame in frames]
     begins, stimulus = [], [{"reset": 1, "first_row": 0, "store": 0, "run_ready": 1}] * 3
-    for cut in cuts:
-        stimulus += [*frame_inputs(frames[0]), *[{}] * cut, {"reset": 1}]
-    for frame, rows in zip(frames, expected, strict=True):
+    for frame, rows, cut in zip_longest(frames, expected, cuts):
+        if cut is not None:
+            stimulus += [*frame_inputs(frame), *[{}] * cut, {"reset": 1}]
         stimulus += frame_inputs(frame)
         # The first row begins two cycles after first_row.
         begins.append(len(stimulus))
@@ -116,7 +129,9 @@ def check_frames(leaf, frames: Sequence[Frame], most: int | None = None) -> None
 def test_span_unit(config, leaf_of, random):
     """Random, cornered and stiff worlds."""
     leaf = unit_bench(leaf_of, config)
-    check_frames(leaf, [any_frame(random, config) for _ in range(QUICK if leaf.few else 8)])
+    check_frames(leaf, busy_frames(random, config, 3), most=ROWS)
+    if not leaf.few:
+        check_frames(leaf, [any_frame(random, config) for _ in range(8)])
 
 
 @pytest.mark.parametrize("reflections", [0, 1])
@@ -124,9 +139,11 @@ def test_a_hundred_rectangles(reflections, leaf_of, random):
     """Worlds of 100 rectangles in the largest table, of which some are at its end."""
     config = span_config(screen="tiny", rectangles=MOST_RECTANGLES, reflections=reflections)
     leaf = unit_bench(leaf_of, config)
-    frames = [any_frame(random, config, 100) for _ in range(1 if leaf.few else 6)]
+    frames = busy_frames(random, config, rectangles=100)
+    if not leaf.few:
+        frames += [any_frame(random, config, 100) for _ in range(6)]
     check_frames(
-        leaf, [replace(frame, table=spread(random, frame.table)) for frame in frames], most=2 if leaf.few else None
+        leaf, [replace(frame, table=spread(random, frame.table)) for frame in frames], most=ROWS if leaf.few else None
     )
 
 
@@ -146,15 +163,18 @@ WIDEST = span_config(rows=180, scale=6, rectangles=12, reflections=4, **dict.fro
 def test_full_hd(leaf_of, random):
     """The first rows of 1920 columns, with the greatest widths."""
     leaf = unit_bench(leaf_of, WIDEST)
-    check_frames(leaf, [any_frame(random, WIDEST) for _ in range(4 if leaf.few else 30)], most=2)
+    frames = busy_frames(random, WIDEST)
+    if not leaf.few:
+        frames += [any_frame(random, WIDEST) for _ in range(30)]
+    check_frames(leaf, frames, most=ROWS)
 
 
 @pytest.mark.parametrize("config", [DESIGNS[-1], WIDEST], ids=config_id)
 def test_both_simulators(config, leaf_of, random):
     """In MyHDL nothing overflows, not even where it does not matter, and all is as in Verilog."""
     leaf, stimulus = unit_bench(leaf_of, config), [{"reset": 1}] * 3
-    for _ in range(1 if leaf.few else 12):
-        stimulus += [*frame_inputs(any_frame(random, config)), *[{}] * 900, {"reset": 1}]
+    for frame in busy_frames(random, config, 1 if leaf.few else 12):
+        stimulus += [*frame_inputs(frame), *[{}] * 900, {"reset": 1}]
     leaf.run_both([{name: int(value) for name, value in one.items() if name in leaf.given} for one in stimulus])
 
 
@@ -172,17 +192,18 @@ def test_a_reset_ends_a_row(leaf_of, random):
     """After a reset in any cycle, a frame is drawn as ever."""
     config = DESIGNS[-1]
     leaf = unit_bench(leaf_of, config)
-    for _ in range(2 if leaf.few else 12):
-        frame = any_frame(random, config)
-        [(rows, wanted)] = drawn(leaf, [frame], most=2, cuts=random.integers(300, size=12).tolist())
-        assert rows == [replace(row, steps=Row().steps) for row in wanted]
+    for frame in busy_frames(random, config, 1 if leaf.few else 6):
+        [(_, [row])] = drawn(leaf, [frame], most=1)
+        cuts = random.integers(row.cycles, size=8).tolist()
+        for rows, wanted in drawn(leaf, [frame] * len(cuts), most=1, cuts=cuts):
+            assert rows == [replace(one, steps=Row().steps) for one in wanted]
 
 
 def test_runs_wait(leaf_of, random):
     """A list that is not always ready gets the same runs."""
     config = DESIGNS[1]
     leaf = unit_bench(leaf_of, config)
-    [(rows, wanted)] = drawn(leaf, [any_frame(random, config)], lambda: int(random.random() < 0.3))
+    [(rows, wanted)] = drawn(leaf, busy_frames(random, config), lambda: int(random.random() < 0.3), most=8)
     assert [row.runs for row in rows] == [row.runs for row in wanted]
 
 
