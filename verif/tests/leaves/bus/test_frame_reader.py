@@ -41,9 +41,9 @@ def wrong_checks() -> list[int]:
     return [difference for _, difference in rows]
 
 
-def stuffed(words: list[int]) -> bytes:
-    """Return the bytes of words between two flags, with no check of their own."""
-    plain = b"".join(word.to_bytes(4, "little") for word in words)
+def stuffed(plain: bytes, check: int) -> bytes:
+    """Return bytes between two flags, with any check."""
+    plain += check.to_bytes(4, "little")
     return b"".join(bytes([ESCAPE, one ^ ESCAPED] if one in (FLAG, ESCAPE) else [one]) for one in plain)
 
 
@@ -89,10 +89,13 @@ def test_frame_reader(places, leaf_of, random):
     settled = leaf.cycle
     flag([0] * (places - 1))
     for difference in wrong_checks():
-        words = [any_word(random)]
-        right = zlib.crc32(words[0].to_bytes(4, "little"))
-        receive(stuffed([*words, right ^ difference]))
+        plain = random.bytes(4)
+        receive(stuffed(plain, zlib.crc32(plain) ^ difference))
         flag(None)
+    for length in range(1, 8):  # no whole words, with the right check
+        plain = random.bytes(length)
+        receive(stuffed(plain, zlib.crc32(plain)))
+        flag(None if length % 4 else [int.from_bytes(plain, "little")])
     for number in range(leaf.some(90)):
         length = int(random.integers(places)) if number % 9 else places - 1
         words = [any_word(random) if random.random() < 0.7 else int(random.choice(ODD_WORDS)) for _ in range(length)]
@@ -100,14 +103,15 @@ def test_frame_reader(places, leaf_of, random):
             receive(framed([*words, *[1] * (places - length)])[:-1])
             flag(None)
         elif number % 7 == 5:
-            data = spoilt(framed([*words, 0x1234]), number % 5, random)
+            data = spoilt(framed([*words, 0x1234]), number // 7 % 5, random)
             if FLAG not in data[1:-1]:
                 receive(data[:-1])
                 flag(None)
         elif number % 7 == 6 and length:  # a reset in a frame
-            receive(framed(words)[:-4])
+            # The rest is the check, as of a frame without words.
+            receive(framed(words)[:-5])
             cycle(reset=1)
-            receive(framed(words)[-4:-1])
+            receive(framed(words)[-5:-1])
             flag(None)
         else:
             receive(framed(words)[:-1])
