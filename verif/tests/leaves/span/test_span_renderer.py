@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Leaf test of `span_renderer`: scenes that are drawn in time and late, at a monitor, with the times of the model."""
+"""Leaf test of `span_renderer`: scenes that are drawn in time, late and in part, with the times of the model."""
 
 from collections import Counter, defaultdict
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from engine_vectors import TINY_SCREEN, check_frames, scene_in_view, scene_inputs, small_config, start_cycle
 from vectors import designs
 
-from raycaster.golden.frames import FIRST_START, frame_cycles
-from raycaster.golden.spans import SpanModel
+from raycaster.golden.frames import FIRST_START, frame_cycles, runs_of
+from raycaster.golden.spans import Row, SpanModel
 from raycaster.rtl.span.span_renderer import span_renderer
 from raycaster.screens import Screen, Span
 from raycaster.verif.expected import sorted_rect
@@ -20,10 +22,21 @@ FAST_SCREEN = Screen(
 """A screen that shows a frame in less time than it takes to draw some scenes."""
 
 
+def first_runs(rows: Sequence[Row], count: int) -> list[Row]:
+    """Return the rows up to this many runs."""
+    first = []
+    for row in rows:
+        first.append(replace(row, runs=row.runs[:count], taken=row.taken[:count]))
+        count -= len(first[-1].runs)
+        if not count:
+            break
+    return first
+
+
 @designs(
     small_config(TINY_SCREEN, engine="span", rectangles=1, reflections=1, pixels=2, colour_bits=4),
-    small_config(FAST_SCREEN, engine="span", rectangles=1, reflections=1, scale=1, units=2),
-    small_config(FAST_SCREEN, engine="span", rectangles=1, reflections=1, scale=1),
+    small_config(FAST_SCREEN, engine="span", rectangles=1, reflections=1, scale=1, units=2, list=6),
+    small_config(FAST_SCREEN, engine="span", rectangles=1, reflections=1, scale=1, list=6),
 )
 def test_span_renderer(config, leaf_of, random):
     """A scene with one rectangle, so the memory's answer never changes, or a black one, goes live with take_scene."""
@@ -32,15 +45,16 @@ def test_span_renderer(config, leaf_of, random):
     leaf.stimulus += [{"reset": 1, "picture_run": 0}] * 2
     first = FIRST_START + (config.rectangles if units > 1 else 0)
     black = np.zeros((screen.rows, columns), dtype=int)
-    drawn, shown, whole_at, black_now = black, black, -1, True
+    drawn, shown, whole, whole_at, black_now = black, black, True, -1, True
     pictures, strobes, held, seen = [], defaultdict(set), {"reset": 0}, Counter()
     now = start_cycle(screen)
     leaf.stimulus += [held] * (now + 1)
     for number in range(leaf.some(75)):
         strobes[now] |= {"start_screen"}
         if whole_at < now:
-            strobes[now] |= {"take_scene"} | ({"frames_shown"} if not black_now else set())
-            shown = drawn
+            strobes[now] |= {"take_scene"} | ({"frames_shown"} if whole and not black_now else set())
+            strobes[now] |= set() if whole else {"frames_again"}
+            shown = drawn if whole else shown
             camera, table, background, reflections, drawn = scene_in_view(random, config, number % 3)
             black_now = seen["take_scene"] % 5 == 4
             held = scene_inputs(camera, table, background, reflections) | {"picture_run": int(not black_now)}
@@ -48,11 +62,14 @@ def test_span_renderer(config, leaf_of, random):
                 held |= sorted_rect(table, 0, "rects_rect")
             whole_at = now + 1
             if black_now:
-                drawn = black
+                drawn, whole = black, True
             else:
-                rows = SpanModel(table, camera, background, columns, reflections).rows(screen)
-                whole_at = now + frame_cycles(rows, columns, units, 2 * columns, first)
-                strobes[whole_at] = {"frames_drawn", whole_at - now}
+                rows = [*SpanModel(table, camera, background, columns, reflections).rows(screen)]
+                whole = runs_of(rows) <= config.list
+                if not whole:
+                    rows, seen["abandoned"] = first_runs(rows, config.list + 1), seen["abandoned"] + 1
+                whole_at = now + frame_cycles(rows, columns, units, 2 * columns, first) - (not whole)
+                strobes[whole_at] = {"frames_drawn", whole_at - now} if whole else {"frames_list_full"}
         else:
             strobes[now] |= {"frames_late", "frames_again"}
         seen.update(strobes[now])
@@ -72,4 +89,5 @@ def test_span_renderer(config, leaf_of, random):
     check_frames(outputs, config, pictures)
     assert min(seen["frames_shown"], seen["take_scene"] - seen["frames_shown"]) > 1
     assert seen["frames_late"] or units > 1 or config.pixels > 1
+    assert seen["abandoned"] > 1 or config.pixels > 1
     assert len(np.unique(np.concatenate(pictures))) > 5
