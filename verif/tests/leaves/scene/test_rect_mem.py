@@ -74,7 +74,7 @@ def fill_places(random: np.random.Generator, table: Table) -> list[dict[str, int
     return [{**idle, "reset": 1}, *writes, idle, commit, *writes, idle, commit, go_live, *writes, idle, idle, idle]
 
 
-@pytest.mark.slow_sets("2", "3-", "32", "128")
+@pytest.mark.slow_sets("2", "3-", "32", "128", quick=["3-seed-materials-patterns"])
 @pytest.mark.parametrize(
     ("rectangles", "options"),
     [

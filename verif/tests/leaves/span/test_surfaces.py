@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from span_vectors import NOTHING, cells_bench, chain_inputs, span_config
-from vectors import by, by_axis, named
+from vectors import LAST, by, by_axis, named
 
+from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.spans import ANSWER, Cells, Chain, Drawing, Line, SpanModel, combined, folded
 from raycaster.golden.world import OTHER_AXES
 from raycaster.hdl.signals import bit
@@ -19,13 +20,17 @@ from raycaster.rtl.span.surface_table import surface_table
 COLUMNS = 64
 
 
-def any_surface(random):
+def any_surface(random, mirrors: int):
     """Return slopes, and an axis, distance, eye and span such that all points of the span are in the world."""
     while True:
         slope = tuple(Line(int(random.integers(-2000, 2000)), int(random.integers(-50, 51))) for _ in range(3))
         axis, eye = int(random.integers(3)), tuple(random.integers(-100, 600, 3).tolist())
         distance, back = int(random.choice([1, 50, 200, int(random.integers(1, 900))])), bool(random.integers(2))
         backs = tuple(bool(one) for one in random.integers(2, size=3))
+        if not mirrors:
+            # The camera itself, often at the world's edge.
+            eye, backs = tuple(random.choice([0, LAST, *random.integers(WORLD_SIZE, size=2)], 3).tolist()), (False,) * 3
+            distance = min(distance, LAST)
         if random.random() < 0.5:
             # Points at whole coordinates, some of them at edges of cells.
             size = int(random.choice([1, 2, 8]))
@@ -48,10 +53,10 @@ def any_surface(random):
             return slope, axis, distance, back, ahead, eye, backs, there[0], there[-1] + 1
 
 
-@by(count=[240])
-def test_surface_cells(count, leaf_of, random):
+@by(reflections=[0, 1])
+def test_surface_cells(reflections, leaf_of, random):
     """The cell of each column, in as many cycles as the model says; several levels are apart."""
-    config = span_config(screen="tiny", rectangles=4, reflections=1, turn=True, patterns=True)
+    config = span_config(screen="tiny", rectangles=4, reflections=reflections, turn=True, patterns=True)
     width = column_bits(config)
     leaf = leaf_of(
         cells_bench, config, slope=lambda: Vector(span_slope_bits(config)),
@@ -61,9 +66,9 @@ def test_surface_cells(count, leaf_of, random):
     )  # fmt: skip
     leaf.case({"reset": 1})
     turns = 0
-    for number in range(leaf.some(count)):
-        slope, axis, distance, back, ahead, eye, backs, start, stop = any_surface(random)
-        kind, size, level = int(random.integers(4)), int(random.integers(6)), number % 2
+    for number in range(leaf.some(240)):
+        slope, axis, distance, back, ahead, eye, backs, start, stop = any_surface(random, reflections)
+        kind, size, level = int(random.integers(4)), int(random.integers(6)), number % (reflections + 1)
         inputs = by_axis("slope_", (one.at_0 for one in slope)) | by_axis("step_slope_", (one.growth for one in slope))
         inputs |= chain_inputs(Chain(0, COLUMNS, eye, backs)) | {"rect_cell": size, "reset": 0, "paint": 1}
         inputs |= named("winner", {"axis": axis, "back": int(back), "distance": distance})
