@@ -27,7 +27,10 @@ from raycaster.rtl.bus.avalon_interface import engine_word, size_word, table_wor
 from raycaster.scene import find_scene, load_scene
 from raycaster.serial_frames import FLAG, FrameDecoder, access, framed, last_access, writes
 
-SPAN = configure(engine="span", rectangles=12, turn=True, light=True, materials=True, patterns=True, bus="uart")
+SPAN, LARGE = (
+    configure(engine="span", rectangles=count, turn=True, light=True, materials=True, patterns=True, bus="uart")
+    for count in (12, 128)
+)
 
 
 class Device:
@@ -102,14 +105,16 @@ def test_a_room_is_a_frame():
         assert found[-1] == pairs[-1]
 
 
-@pytest.mark.parametrize("deaf", [0, 2])
-def test_send(capsys, deaf):
+@pytest.mark.parametrize(("config", "deaf"), [(SPAN, 0), (LARGE, 2)])
+def test_send(capsys, config, deaf):
     """All words of a room are written; a frame that is not answered is sent again."""
-    device = Device(SPAN, deaf)
+    device = Device(config, deaf)
     path = find_scene("lamplight")
     send.main([str(path), "--port", device.port])
-    assert sorted(device.written) == sorted(scene_words(load_scene(path), SPAN))
-    assert re.search(r"lamplight\.toml: sent, \d+ of at most 12 rectangles, span engine\n", capsys.readouterr().out)
+    assert sorted(device.written) == sorted(scene_words(load_scene(path), config))
+    assert re.search(
+        rf"lamplight\.toml: sent, \d+ of at most {config.rectangles} rectangles, span engine\n", capsys.readouterr().out
+    )
 
 
 @contextmanager
@@ -174,7 +179,9 @@ def test_no_board(monkeypatch, tmp_path):
     assert "port: no answer from loop:// at 9600 baud; " in refused(
         send.main, "boxes", "--port", "loop://", "--baud", "9600"
     )
-    device = Device(SPAN)
+    device, engine = Device(SPAN), register_map(1)["engine"]
+    device._words[engine.address] |= engine.fields["fixed"].mask
+    assert "has its scene built in; make it without " in refused(send.main, "boxes", "--port", device.port)
     device._words[0] = 1
     assert "is no ray tracer of this version" in refused(send.main, "boxes", "--port", device.port)
     assert "walk: takes keys from a terminal" in refused(board_walk.main, "boxes", "--port", "loop://")
