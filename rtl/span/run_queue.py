@@ -22,7 +22,7 @@ def run_queue(
         valid: flag; run is there.
         run: `ListEntry`; is taken in each cycle with valid and ready.
         take: strobe; head is replaced by the next run. Only while offered.
-        ready: output flag; the queue is not full.
+        ready: output flag, a register; the queue is not full.
         room: output flag, a register; there is room for all runs that a row can have.
         offered: output flag; head is a run, at the earliest two cycles and `read_latency` after it was taken from the
             unit.
@@ -51,9 +51,8 @@ def run_queue(
 
     @always_comb
     def accept():
-        ready.next = unread != places
         more.next = unread != 0
-        put.next = valid and (unread != places)
+        put.next = valid and ready
 
     @always(clk.posedge)
     def follow():
@@ -75,8 +74,10 @@ def run_queue(
     def count():
         if reset:
             unread.next = 0
+            ready.next = True
             room.next = True
         elif put != fetch:
+            ready.next = fetch or (unread != last)
             unread.next = (unread + change) % (1 << len(unread))
             if put and (unread == most):
                 room.next = False

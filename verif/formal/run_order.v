@@ -77,7 +77,7 @@ wire [RUN_BITS-1:0] in_memory =
     place % PLACES == 0 ? \dut.run_memory_i.run_bank_i.memory[0] :
     place % PLACES == 1 ? \dut.run_memory_i.run_bank_i.memory[1] : \dut.run_memory_i.run_bank_i.memory[2] ;
 always @* if (known) begin
-    assert (room == (dut.unread <= PLACES - COLUMNS));
+    assert (ready == (dut.unread != PLACES) && room == (dut.unread <= PLACES - COLUMNS));
     assert (dut.unread <= PLACES && in_slots <= SLOTS && ahead <= SLOTS && all == ahead + dut.unread);
     assert (ahead == in_slots + on_the_way[0] + on_the_way[1] && dut.run_memory_i.run_bank_i.reads);
     assert (read_place < PLACES && write_place == (next_place >= PLACES ? next_place - PLACES : next_place));
