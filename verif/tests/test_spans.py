@@ -51,16 +51,12 @@ def test_packaged_scenes_on_the_whole_screen(name, reflections):
     check(replace(scene_frame(SCENES[name]), reflections=reflections), VGA)
 
 
-def test_stiff_catalogue():
-    """The catalogue's scenes strain arithmetic on the whole screen; here every fourth one, on the small one."""
-    for case in catalogue(FEATURES)[::4]:
-        check(scene_frame(case.scene), TINY)
-
-
-@pytest.mark.slow
-def test_stiff_catalogue_on_the_whole_screen():
-    for case in catalogue(FEATURES):
-        check(scene_frame(case.scene), VGA)
+@pytest.mark.slow_sets("1-")
+@pytest.mark.parametrize(("every", "screen"), [(1, VGA), (4, TINY)])
+def test_stiff_catalogue(every, screen):
+    """The catalogue's scenes strain arithmetic on the whole screen; every fourth one is drawn on the small one."""
+    for case in catalogue(FEATURES)[::every]:
+        check(scene_frame(case.scene), screen)
 
 
 DESIGNS = {
@@ -69,19 +65,13 @@ DESIGNS = {
 }  # fmt: skip
 
 
+@pytest.mark.slow_sets("600")
 @pytest.mark.parametrize("name", DESIGNS)
-def test_random_worlds(name, random):
+@pytest.mark.parametrize("count", [600, 24])
+def test_random_worlds(count, name, random):
     """Random, cornered and stiff worlds: points, lines, facing mirrors, planes through one edge, combs, any basis."""
     config = span_config(**{"screen": "tiny", "rectangles": 12} | DESIGNS[name])
-    for _ in range(24):
-        check(any_frame(random, config), TINY)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", DESIGNS)
-def test_more_random_worlds(name, random):
-    config = span_config(**{"screen": "tiny", "rectangles": 12} | DESIGNS[name])
-    for _ in range(600):
+    for _ in range(count):
         check(any_frame(random, config), TINY)
 
 
