@@ -84,7 +84,7 @@ class Bench(Leaf):
             if name == "config":
                 return config
             if name in ("control", "unit") and config is not None:
-                return getattr(engine_of(config), name)
+                return engine_of(config).blocks[name == "unit"]
             if parameter.annotation is not parameter.empty or parameter.default is not parameter.empty:
                 return given[name]
             made = given.get(name, PORTS.get(name, lambda _: bit()))
