@@ -484,35 +484,18 @@ class Expressions:
     def _type(self, node: ast.expr) -> tuple[int, bool]:
         """Return the bits of an operand, and True if Verilog takes it as two's complement."""
         match node:
-            case ast.Compare() | ast.BoolOp() | ast.UnaryOp(op=ast.Not()):
-                return 1, False
             case ast.Subscript(slice=ast.Slice(lower=lower, upper=upper)):
                 bits, signed = self._type(node.value)
-                if lower is None and upper is None:
-                    return bits, signed
-                if lower is None and signed:
-                    return bits, True
-                return self._width(node, bits), False
-            case ast.Subscript() if is_memory(self._object(node.value)):
-                return _shape(self._object(node))
+                whole = lower is None and (upper is None or signed)
+                return (bits, signed) if whole else (self._width(node, bits), False)
             case ast.Subscript() if (table := table_of(self._object(node.value))) is not None:
                 around = Range(min(table), max(table))
                 return max(around.bits(around.low < 0), 1), around.low < 0
-            case ast.Subscript():
-                return 1, False
             case ast.Call() if _called(node) == intbv.signed and isinstance(node.func, ast.Attribute):
                 return self._type(node.func.value)[0], True
             case ast.Call() if _called(node) is concat:
                 return sum(self._operand_of_concat(argument)[0] for argument in node.args), False
-            case ast.Call() if _called(node) is bool:
-                return 1, False
-            case ast.Call() if (tree := _tree(node)) is not None:
-                return _shape(tree.returnObj)
-            case ast.Attribute(value=inner, attr="val" | "next"):
-                return self._type(inner)
-            case ast.Name() | ast.Attribute():
-                return _shape(self._object(node))
-        return 1, False
+        return _shape(self._object(node))
 
     def _operand_of_concat(self, node: ast.expr) -> tuple[int, str]:
         """Return the bits and the text of an operand of concat."""
@@ -527,21 +510,6 @@ class Expressions:
 
     def _is_bool(self, node: ast.expr) -> bool:
         """Return True for an expression that is True or False in Python."""
-        match node:
-            case ast.BinOp(op=ast.BitAnd() | ast.BitOr() | ast.BitXor()):
-                return self._is_bool(node.left) and self._is_bool(node.right)
-            case ast.BoolOp():
-                return all(map(self._is_bool, node.values))
-            case ast.IfExp():
-                return self._is_bool(node.body) and self._is_bool(node.orelse)
-            case ast.Compare() | ast.UnaryOp(op=ast.Not()):
-                return True
-            case ast.Subscript():
-                return (
-                    not isinstance(node.slice, ast.Slice) and not self.is_word(node) and self._type(node) == (1, False)
-                )
-            case ast.Call():
-                return _called(node) is bool
         known = self._object(node)
         return isinstance(known.val if isinstance(known, SignalType) else known, bool)
 

@@ -14,7 +14,7 @@ from contextlib import ExitStack, contextmanager, nullcontext
 from io import StringIO
 from typing import Any
 
-from myhdl import ConcatSignal, intbv
+from myhdl import ConcatSignal, concat, intbv
 from myhdl._block import _Block as Block
 from myhdl._enum import EnumItemType, EnumType
 from myhdl._extractHierarchy import _getMemInfo, _isMem
@@ -150,33 +150,46 @@ def around(function: Any) -> dict[str, Any]:
 
 @contextmanager
 def _prepared(prepare: Callable[[Any], None]) -> Iterator[None]:
-    """Make a context in which MyHDL analyses prepared trees, and takes bits joined by an operator as a bit."""
-    first, analyse = _analyze._FirstPassVisitor, _analyze._AnalyzeVisitor.visit_BinOp
+    """Make a context in which MyHDL analyses prepared trees, and knows the types of more expressions."""
+    visitor, first = _analyze._AnalyzeVisitor, _analyze._FirstPassVisitor
+    before, value_of = dict(vars(visitor)), visitor.getVal
 
     class FirstPass(first):
         def visit_Module(self, node: Any) -> None:
             prepare(node)
             self.generic_visit(node)
 
+    def is_bit(*nodes: Any) -> bool:
+        return all(_analyze.hasType(getattr(node, "obj", None), bool) for node in nodes)
+
     def visit_BinOp(self: Any, node: Any) -> None:
-        analyse(self, node)
-        bits = all(_analyze.hasType(getattr(side, "obj", None), bool) for side in (node.left, node.right))
-        if bits and isinstance(node.op, (ast.BitAnd, ast.BitOr, ast.BitXor)):
+        before["visit_BinOp"](self, node)
+        if isinstance(node.op, (ast.BitAnd, ast.BitOr, ast.BitXor)) and is_bit(node.left, node.right):
             node.obj = False
 
     def visit_IfExp(self: Any, node: Any) -> None:
         self.generic_visit(node)
-        one, other = (getattr(side, "obj", None) for side in (node.body, node.orelse))
-        alike = isinstance(one, EnumItemType) or all(_analyze.hasType(side, bool) for side in (one, other))
-        node.obj = getattr(one, "val", one) if alike else -1
+        one = getattr(node.body, "obj", None)
+        node.obj = False if is_bit(node.body, node.orelse) else one if isinstance(one, EnumItemType) else -1
 
-    _analyze._FirstPassVisitor, _analyze._AnalyzeVisitor.visit_BinOp = FirstPass, visit_BinOp
-    _analyze._AnalyzeVisitor.visit_IfExp = visit_IfExp
+    def getVal(self: Any, node: Any) -> Any:
+        try:
+            return value_of(self, node)
+        except Exception:
+            if isinstance(node, ast.Call) and getattr(node.func, "obj", None) is concat:
+                return None  # the index of a bit depends on a loop, or an operand has no width
+            raise
+
+    methods = {"visit_BinOp": visit_BinOp, "visit_IfExp": visit_IfExp, "getVal": getVal}
+    _analyze._FirstPassVisitor = FirstPass
+    for name, method in methods.items():
+        setattr(visitor, name, method)
     try:
         yield
     finally:
-        _analyze._FirstPassVisitor, _analyze._AnalyzeVisitor.visit_BinOp = first, analyse
-        del _analyze._AnalyzeVisitor.visit_IfExp
+        _analyze._FirstPassVisitor = first
+        for name in methods:
+            setattr(visitor, name, before[name]) if name in before else delattr(visitor, name)
 
 
 def _add_inputs(tree: Any) -> None:

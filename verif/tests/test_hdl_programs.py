@@ -696,8 +696,8 @@ def tables_and_quotients_below_0(a, i, y, n, z, w):
     return instances()
 
 
-@program(clk=1, a=4, b=4, y=6, parity=1, carry=1, kept=4)
-def functions_and_bits_of_the_block(clk, a, b, y, parity, carry, kept):
+@program(clk=1, a=4, b=4, y=6, parity=1, carry=1, pairs=8, kept=4)
+def functions_and_bits_of_the_block(clk, a, b, y, parity, carry, pairs, kept):
     mode, table = "odd", (3, 1, 2, 9)
 
     def more(x):
@@ -722,6 +722,7 @@ def functions_and_bits_of_the_block(clk, a, b, y, parity, carry, kept):
         chain = False
         for k in range(4):
             chain = (a[k] & b[k]) | (chain & (a[k] ^ b[k]))
+            pairs.next[2 * k + 2 : 2 * k] = concat(a[k], b[3 - k])
         carry.next = chain
         parity.next = (odd ^ a[2]) and not (b[0] | b[1])
 
