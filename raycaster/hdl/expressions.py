@@ -95,6 +95,7 @@ class Expressions:
         self._tree, self._function_name = tree, function_name
         self._ranges = dict(arguments)
         self._assumed: dict[str, int] = {}
+        self._around: list[Any] = []
         self._find_ranges()
 
     def refuse(self, node: Any, reason: str) -> NoReturn:
@@ -379,24 +380,25 @@ class Expressions:
     def within(self, node: Any) -> Iterator[None]:
         """Make a context in which a loop's variable has its values there; elsewhere, it has those of all loops."""
         numbers = self.numbers(node)
-        with self._narrowed({node.target.id: Range(min(numbers), max(numbers))} if numbers else {}):
+        with self._narrowed({node.target.id: Range(min(numbers), max(numbers))} if numbers else {}, node):
             yield
 
     @contextmanager
     def where(self, test: ast.expr, truth: bool, statement: ast.stmt | None = None) -> Iterator[None]:
         """Make a context in which a condition is true, or false; it limits names that a statement does not change."""
         changed = {*_changed(statement)} if statement else ()
-        with self._narrowed({name: limits for name, limits in self._limits(test, truth) if name not in changed}):
+        limits = {name: limits for name, limits in self._limits(test, truth) if name not in changed}
+        with self._narrowed(limits, (test, truth)):
             yield
 
     @contextmanager
-    def _narrowed(self, ranges: Mapping[str, Range]) -> Iterator[None]:
-        before = self._ranges
-        self._ranges = {**before, **ranges}
+    def _narrowed(self, ranges: Mapping[str, Range], around: Any) -> Iterator[None]:
+        before = self._ranges, self._around
+        self._ranges, self._around = {**self._ranges, **ranges}, [*self._around, around]
         try:
             yield
         finally:
-            self._ranges = before
+            self._ranges, self._around = before
 
     def _limits(self, test: ast.expr, truth: bool) -> Iterator[tuple[str, Range]]:
         """Yield names and their ranges where a condition is true, or false."""
@@ -407,7 +409,7 @@ class Expressions:
                 with ExitStack() as before:
                     for value in test.values:
                         found = dict(self._limits(value, truth))
-                        before.enter_context(self._narrowed(found))
+                        before.enter_context(self._narrowed(found, (value, truth)))
                         yield from found.items()
             case ast.Compare(left=left, ops=[op], comparators=[right]):
                 kind = type(op) if truth else OPPOSITES.get(type(op))
@@ -449,6 +451,17 @@ class Expressions:
         one = ast.Constant(1)
         first, end = (ast.copy_location(ast.BinOp(bound, ast.Sub(), one), node) for bound in (first, end))
         return first, end, -step
+
+    def _values(self, node: ast.expr, around: Sequence[Any]) -> Iterator[Any]:
+        """Yield the value of an expression in each run of loops and under conditions; None where it is not constant."""
+        if not around:
+            yield self.constant(node)
+        elif isinstance(around[0], ast.For):
+            for number in self.numbers(around[0]):
+                with self.assuming({ast.unparse(around[0].target): number}):
+                    yield from self._values(node, around[1:])
+        elif (decided := self.constant(around[0][0])) is None or bool(decided) == around[0][1]:
+            yield from self._values(node, around[1:])
 
     def numbers(self, node: Any) -> range:
         """Return the values of a loop's variable, or of its bounds vary, a range that contains them."""
@@ -783,6 +796,8 @@ class Expressions:
                     self.refuse(node, f"{ast.unparse(value)} is a tuple, and Verilog has tables of numbers only; "
                                 "use a list of signals, or if and elif")  # fmt: skip
                 around = self.range(index)
+                if around.low < 0 and (found := {*self._values(index, self._around)}) and None not in found:
+                    around = Range(max(around.low, min(found)), min(around.high, max(found)))
                 if around.low < 0:
                     self.refuse(node, "the index may be below 0; give it a range without a sign")
                 if (table := table_of(known)) is not None:

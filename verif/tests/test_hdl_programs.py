@@ -647,7 +647,10 @@ def conditions_and_loops_bound_indices(a, i, k, y, n, found, half, top, some, la
         for row in range(8):
             odd = 0
             for column in range(row):
-                odd = odd + a[column + 1]
+                odd = odd + a[row - column - 1]
+            for column in range(8):
+                if column <= row:
+                    odd = odd + a[row - column]
             for column in range(7, row, -2):
                 odd = odd + a[column]
             y.next[row] = odd % 2
