@@ -10,7 +10,7 @@ from typing import Any
 
 from raycaster.hdl.internals import EnumItemType, EnumType, SignalType, around
 
-PYTHON = {one.__name__: one for one in (len, isinstance, int, bool, abs, min, max, round)}
+PYTHON = {one.__name__: one for one in (len, range, isinstance, int, bool, abs, min, max, round)}
 """Functions and types of Python in expressions of constants."""
 
 EXPRESSIONS = (ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.IfExp, ast.Compare, ast.Subscript, ast.Tuple, ast.List)
@@ -68,6 +68,10 @@ class _Decided(ast.NodeTransformer):
         super().generic_visit(branch)
         return branch.body
 
+    def visit_For(self, node: ast.For) -> Any:
+        """Leave out a loop that never runs."""
+        return [] if self._value(node.iter) == [range(0)] else self.generic_visit(node)
+
     def visit_IfExp(self, node: ast.IfExp) -> Any:
         decided = self._decide(node.test)
         return self.generic_visit(node) if decided is None else self.visit(node.body if decided else node.orelse)
@@ -77,7 +81,11 @@ class _Decided(ast.NodeTransformer):
         [value] = self._value(node) or [None]
         return ast.copy_location(ast.Constant(value), node) if isinstance(value, int) else node
 
-    visit_Subscript = visit_Call
+    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
+        [place], words = self._value(node.slice) or [None], self._around.get(getattr(node.value, "id", ""))
+        if isinstance(words, list) and isinstance(place, int) and place < 0:
+            node.slice = ast.copy_location(ast.Constant(place + len(words)), node)
+        return self.visit_Call(node)
 
     def visit_Compare(self, node: ast.Compare) -> ast.expr:
         self.generic_visit(node)

@@ -487,7 +487,7 @@ def shifts(clk, a, row, y):
 
     @always_comb
     def last():
-        y.next = row[2]
+        y.next = row[-1]
 
     return instances()
 
@@ -624,6 +624,8 @@ def branches_that_constants_decide(clk, reset, a, y, z, kept):
         else:
             y.next = extra
         z.next = a[9] if wide else flipped(a)
+        for k in range(len(a), 4):
+            z.next[k] = a[k - 9]
         if len(a) > 4 or (wide and a[7]):
             z.next = a[6:2]
 
