@@ -464,7 +464,7 @@ class Expressions:
             yield from self._values(node, around[1:])
 
     def numbers(self, node: Any) -> range:
-        """Return the values of a loop's variable, or of its bounds vary, a range that contains them."""
+        """Return the values of a loop's variable, or if its bounds vary, a range that contains them."""
         start, stop, step = self.loop(node)
         one, other = self.range(start), self.range(stop)
         first, end = (one.low, other.high) if step > 0 else (one.high, other.low)
@@ -801,6 +801,8 @@ class Expressions:
                 if around.low < 0:
                     self.refuse(node, "the index may be below 0; give it a range without a sign")
                 if (table := table_of(known)) is not None:
+                    if isinstance(node.ctx, ast.Store):
+                        self.refuse(node, "the numbers of a table do not change in Verilog; use a list of signals")
                     place, (bits, signed) = self._root(index, None), self._type(node)
                     values = [f"{bits}'{'s' * signed}h{value % (1 << bits):x}" for value in table]
                     choices = [f"{place} == {number} ? {value} : " for number, value in enumerate(values[:-1])]

@@ -31,7 +31,7 @@ def prepare(tree: Any) -> None:
     for name in {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} & {*tree.symdict}:
         value = tree.symdict[name]
         if isinstance(value, list) and value and all(isinstance(one, int) for one in value):
-            tree.symdict[name] = tuple(value)  # a table, as nothing assigns to its elements
+            tree.symdict[name] = tuple(value)
         elif isinstance(value, FunctionType):
             tree.symdict[name] = _opened(value)
 
@@ -85,7 +85,7 @@ class _Decided(ast.NodeTransformer):
         [place], words = self._value(node.slice) or [None], self._around.get(getattr(node.value, "id", ""))
         if isinstance(words, list) and isinstance(place, int) and place < 0:
             node.slice = ast.copy_location(ast.Constant(place + len(words)), node)
-        return self.visit_Call(node)
+        return self.visit_Call(node) if isinstance(node.ctx, ast.Load) else self.generic_visit(node)
 
     def visit_Compare(self, node: ast.Compare) -> ast.expr:
         self.generic_visit(node)

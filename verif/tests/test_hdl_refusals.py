@@ -135,6 +135,13 @@ def process(statements: str) -> str:
             "table = (3, 1, 2, 0)\n" + process("result.next = table[step]"),
             "the index may be below 0",
         ),
+        *(
+            (
+                "table = [3, 1, 2, 0]\n" + process(f"table[{at}] = 2\nresult.next = table[index]"),
+                "the numbers of a table",
+            )
+            for at in ("1", "index")
+        ),
         (
             "def five():\n    return 5\n" + process("result.next = five() + a"),
             "a function in Verilog needs an argument",
