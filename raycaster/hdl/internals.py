@@ -152,7 +152,7 @@ def around(function: Any) -> dict[str, Any]:
 def _prepared(prepare: Callable[[Any], None]) -> Iterator[None]:
     """Make a context in which MyHDL analyses prepared trees, and knows the types of more expressions."""
     visitor, first = _analyze._AnalyzeVisitor, _analyze._FirstPassVisitor
-    before, value_of = dict(vars(visitor)), visitor.getVal
+    before, value_of, count_of = dict(vars(visitor)), visitor.getVal, _analyze._getNritems
 
     class FirstPass(first):
         def visit_Module(self, node: Any) -> None:
@@ -180,14 +180,18 @@ def _prepared(prepare: Callable[[Any], None]) -> Iterator[None]:
                 return None  # the index of a bit depends on a loop, or an operand has no width
             raise
 
+    def count(known: Any) -> int:
+        value = known.val if isinstance(known, SignalType) else known
+        return 2 if isinstance(value, bool) else 1 << 32 if isinstance(value, int) else count_of(known)
+
     methods = {"visit_BinOp": visit_BinOp, "visit_IfExp": visit_IfExp, "getVal": getVal}
-    _analyze._FirstPassVisitor = FirstPass
+    _analyze._FirstPassVisitor, _analyze._getNritems = FirstPass, count
     for name, method in methods.items():
         setattr(visitor, name, method)
     try:
         yield
     finally:
-        _analyze._FirstPassVisitor = first
+        _analyze._FirstPassVisitor, _analyze._getNritems = first, count_of
         for name in methods:
             setattr(visitor, name, before[name]) if name in before else delattr(visitor, name)
 

@@ -738,8 +738,8 @@ def functions_and_bits_of_the_block(clk, a, b, y, parity, carry, pairs, kept):
     return instances()
 
 
-@program(clk=1, go=1, y=2)
-def a_state_in_all_cases(clk, go, y):
+@program(clk=1, go=1, y=2, z=2)
+def a_state_in_all_cases(clk, go, y, z):
     state = Signal(STATES.IDLE)
 
     @always(clk.posedge)
@@ -748,6 +748,18 @@ def a_state_in_all_cases(clk, go, y):
             state.next = STATES.BUSY
         elif go:
             state.next = STATES.DONE
+
+    @always_comb
+    def choose():
+        if go == 0:
+            z.next = 3
+        elif go == 1:
+            z.next = y
+        for k in range(3):
+            if k == 0:
+                z.next[k] = y[1]
+            elif k == 2:
+                z.next[k - 1] = y[0]
 
     @always_comb
     def look():
