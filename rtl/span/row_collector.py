@@ -64,14 +64,19 @@ def row_collector(
         elif new_frame:
             rows_left.next = rows
             collecting.next = True
+        elif take and ends:
+            rows_left.next = rows_left - 1
+            collecting.next = rows_left != 1
+
+    # Places are don't care when a frame is dropped, so the way from the list's end does not come here.
+    @always(clk.posedge)
+    def count_places():
+        if new_frame:
             fits.next = True
             next_place.next = 0
         elif take:
             fits.next = next_place != last_place
             next_place.next = (next_place + 1) % (1 << len(next_place))
-            if ends:
-                rows_left.next = rows_left - 1
-                collecting.next = rows_left != 1
 
     if units > 1:
 
