@@ -98,6 +98,14 @@ def test_uart_bridge(patience, leaf_of, random):
         if hears and waits:
             drive([1] * (CYCLES * 10 * (10 + 9 * len(answer))))
 
+    def spoil(words):
+        """Send a frame with a wrong bit."""
+        data = bytearray(framed(words))
+        place = int(random.integers(1, len(data) - 1))
+        data[place] ^= 1 << int(random.integers(8))
+        if not {0x7D, 0x7E} & {data[place], data[place] ^ 1}:
+            drive(in_time(levels_of([LEAD, *data]), CYCLES))
+
     def some(count):
         return [any_word(random) for _ in range(count)]
 
@@ -115,15 +123,13 @@ def test_uart_bridge(patience, leaf_of, random):
             case 2:  # two writes; a count of 0; bits that are above the address
                 send([*access(address, some(2)), 1 << 31 | other, *access(other | 0xFFF0, some(4))])
             case 3:  # a wrong bit
-                data = bytearray(framed(access(address, some(4))))
-                place = int(random.integers(1, len(data) - 1))
-                data[place] ^= 1 << int(random.integers(8))
-                if not {0x7D, 0x7E} & {data[place], data[place] ^ 1}:
-                    drive(in_time(levels_of([LEAD, *data]), CYCLES))
-            case 4:  # the answer is cut by the next frame's
-                send(access(address, read=5), hears=False)
+                spoil(access(address, some(4)))
+            case 4:  # the answer is cut by the next frame's, which is carried out before its words are overwritten
+                send(access(address, read=20), hears=False)
                 drive([1] * (CYCLES * int(random.integers(10, 40))))
-                send(access(other, some(1)))
+                send(access(other, some(1)), waits=False)
+                spoil(access(other, some(1)))
+                drive([1] * (CYCLES * 100))
             case 5:  # a frame follows a long write at once, and a write that ends before its last word
                 send(access(address, some(8)), waits=False)
                 send([*access(other, some(4))[:-1]])
