@@ -83,6 +83,10 @@ def test_frames():
     for noise in (b"", b"\x12\x7d", data[:9]):
         assert list(FrameDecoder().feed(noise + data + data[:-1])) == [words]
     assert list(FrameDecoder().feed(data[:5] + bytes([data[5] ^ 1]) + data[6:])) == []
+    assert list(FrameDecoder().feed(data[:-1] + b"\x7d" + data[-1:])) == [], "an abort"
+    for address, count in ((0, 1024), (1 << 16, 1)):
+        with pytest.raises(ValueError, match="does not fit a frame"):
+            access(address, read=count)
     decoder, parts = FrameDecoder(), [data[at : at + 3] for at in range(0, len(data), 3)]
     assert [found for part in parts for found in decoder.feed(part)] == [words]
     plain = b"".join(word.to_bytes(4, "little") for word in words)

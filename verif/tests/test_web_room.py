@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -15,7 +16,7 @@ from raycaster.design.decide import configure
 from raycaster.golden.frames import scene_cycles
 from raycaster.program import scene_words
 from raycaster.registers import register_map
-from raycaster.rtl.bus.avalon_interface import engine_word, size_word
+from raycaster.rtl.bus.avalon_interface import engine_word, size_word, table_word
 from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.serial_frames import LEAD, access, framed, writes
 
@@ -277,11 +278,12 @@ PORT = """(([answers]) => {
         written.push([...bytes]);
         if (answers[count]) give.enqueue(new Uint8Array(answers[count++]));
     } });
-    const port = { readable, writable, open: async ({ baudRate }) => (port.rate = baudRate), close: async () => {} };
+    const open = async ({ baudRate }) => (window.boardRate = baudRate), close = async () => (window.boardRate = 0);
+    const port = { readable, writable, open, close };
     Object.defineProperty(navigator, "serial", { configurable: true, value: { requestPort: async () => port } });
     window.sentToBoard = written;
 })"""
-BOARD = configure(engine="span", turn=True, light=True, materials=True, patterns=True, rectangles=32, reflections=4)
+BOARD = configure(engine="span", turn=True, light=True, materials=True, patterns=True, rectangles=128, reflections=4)
 
 
 def room_bytes(scene: Scene, config: Configuration) -> list[int]:
@@ -314,21 +316,35 @@ def test_send_to_board(room):
     assert room.is_visible("#room-board") == room.evaluate("Boolean(navigator.serial)")
     registers = register_map(*BOARD.map)
     asked = access(0, read=registers["table"].address + 1)
-    words = {"id": registers["id"].reset, "engine": engine_word(BOARD), "size": size_word(BOARD)}
-    answer = [*asked, *(0 for _ in range(registers["table"].address + 1))]
-    for name, word in words.items():
-        answer[1 + registers[name].address] = word
+
+    def described(config: Configuration, **known: int) -> bytes:
+        """Return what a design says of itself."""
+        words = {"id": registers["id"].reset, "engine": engine_word(config), "size": size_word(config)}
+        words |= {"table": table_word(config)} | known
+        by_address = {registers[name].address: word for name, word in words.items()}
+        return framed([*asked, *(by_address.get(address, 0) for address in range(registers["table"].address + 1))])
+
     written = access(registers["control"].address, [0])[:1]
+    fixed = engine_word(BOARD) | registers["engine"].fields["fixed"].mask
     for answers, said in (
-        ([framed(answer), framed(written)], "The board shows this room, with the span engine."),
-        ([framed([*answer[:1], 1, *answer[2:]])], "Not sent: what answers is no ray tracer"),
+        ([described(BOARD), framed(written)], "The board shows this room, with the span engine."),
+        ([described(BOARD, id=1)], "Not sent: what answers is no ray tracer"),
+        ([described(BOARD, engine=fixed)], "Not sent: the design has a scene built in"),
+        (
+            [described(replace(BOARD, rectangles=2))],
+            f"Not sent: {len(scene.rect)} rectangles, but the board's design holds 2",
+        ),
+        (
+            [described(replace(BOARD, light=False))],
+            "Not sent: the board's design has no light; build it with LIGHT=1",
+        ),
         ([], "Not sent: no answer at 1000000 baud"),
     ):
         room.evaluate(PORT, [[list(one) for one in answers]])
         room.evaluate("find('room-board').hidden = false")
         room.click("#room-board")
         room.wait_for_function(f"find('room-said').textContent === {said!r}")
-        frames = room.evaluate("window.sentToBoard")
-        assert frames[0] == [LEAD, *framed(asked)]
-        if len(answers) == 2:
-            assert frames[1:] == [room_bytes(scene, BOARD)]
+        frames, rate = room.evaluate("[window.sentToBoard, window.boardRate]")
+        question = [LEAD, *framed(asked)]
+        assert frames == ([question] * 3, [question], [question, room_bytes(scene, BOARD)])[len(answers)]
+        assert rate == 0, "the port is open"
