@@ -219,7 +219,7 @@ FAULTS = {
     "rectangles-too-early": ("rect_slot", "if (bus_go_live)", "if (bus_commit)", "pixels are wrong"),
     "over-another-copy": ("rect_mem", "bank = 2;", "bank = 1;", "pixels are wrong"),
     "restarts-too-early": (
-        "video_generator", "x <= -32;\n                if", "x <= -31;\n                if", "irq is 0, expected 1",
+        "video_generator", "x <= -32;\n                if", "x <= -31;\n                if", "irq is 1, expected 0",
     ),
 }  # fmt: skip
 """Module, right and wrong Verilog, and the complaint."""
