@@ -25,7 +25,7 @@ from raycaster.program import scene_words
 from raycaster.registers import register_map
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word, table_word, version_word
 from raycaster.scene import find_scene, load_scene
-from raycaster.serial_frames import FLAG, FrameDecoder, access, framed, last_access, writes
+from raycaster.serial_frames import FLAG, LEAD, FrameDecoder, access, framed, last_access, writes
 
 SPAN, LARGE = (
     configure(engine="span", rectangles=count, turn=True, light=True, materials=True, patterns=True, bus="uart")
@@ -40,12 +40,13 @@ class Device:
         port: name of the serial port.
         written: words and their addresses in the order of writing.
         deaf: number of frames that are dropped.
+        heard: all bytes that came.
     """
 
     def __init__(self, config: Configuration, deaf: int = 0):
         self._end, other = pty.openpty()
         tty.setraw(other)
-        self.port, self.written, self.deaf = os.ttyname(other), [], deaf
+        self.port, self.written, self.deaf, self.heard = os.ttyname(other), [], deaf, bytearray()
         registers = register_map(*config.map)
         words = {"id": registers["id"].reset, "version": version_word(config), "engine": engine_word(config),
                  "size": size_word(config), "table": table_word(config)}  # fmt: skip
@@ -55,11 +56,14 @@ class Device:
     def _serve(self) -> None:
         decoder = FrameDecoder()
         while True:
-            for words in decoder.feed(os.read(self._end, 256)):
+            data = os.read(self._end, 256)
+            self.heard += data
+            for words in decoder.feed(data):
                 self.deaf -= 1
                 if self.deaf < 0:
-                    # Half an answer to someone else comes first.
-                    os.write(self._end, framed([7, 8])[:6] + framed(self._carried_out(words)))
+                    # Half an answer to someone else comes first, and a whole one.
+                    answer = self._carried_out(words)
+                    os.write(self._end, framed([7, 8])[:6] + framed([7] * len(answer)) + framed(answer))
 
     def _carried_out(self, words: list[int]) -> list[int]:
         at = 0
@@ -116,6 +120,7 @@ def test_send(capsys, config, deaf):
     path = find_scene("lamplight")
     send.main([str(path), "--port", device.port])
     assert sorted(device.written) == sorted(scene_words(load_scene(path), config))
+    assert 2 * device.heard.count(bytes([LEAD, FLAG])) == device.heard.count(FLAG)
     assert re.search(
         rf"lamplight\.toml: sent, \d+ of at most {config.rectangles} rectangles, span engine\n", capsys.readouterr().out
     )
