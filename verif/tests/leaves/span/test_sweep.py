@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import product
 
 import pytest
 from span_vectors import NOTHING, chain_bench, chain_ports, span_config
-from vectors import by_axis, named
+from vectors import by, by_axis, named
 
 from raycaster.golden.spans import Chain, Drawing, Entry, Line, Rect, SpanModel
 from raycaster.rtl.common.widths import eye_bits, level_bits
@@ -110,28 +111,29 @@ def entry_inputs(entry, slope, prefix) -> dict[str, int]:
     return named(prefix, entry_fields(entry, slope))
 
 
-@pytest.mark.parametrize("reflections", [0, 3])
-def test_entry_table(reflections, leaf_of, random):
-    """Tables of all levels are apart."""
-    config = span_config(screen="tiny", rectangles=5, reflections=reflections)
+@by(light=[False, True], reflections=[0, 3])
+def test_entry_table(light, reflections, leaf_of, random):
+    """Tables of all levels are apart, and with a light those of the shadows."""
+    config = span_config(screen="tiny", rectangles=5, reflections=reflections, light=light)
     ports = {"level": level_bits(config), "number": count_bits(config), "place": 3}
     leaf = leaf_of(entry_table, config, entry=lambda: EntryRecord(config), stored=lambda: EntryRecord(config), **ports)
     memory, shown = {}, None
-    places = [(level, place) for level in range(reflections + 1) for place in range(5)]
-    for level, place in places:
-        memory[level, place] = int(random.integers(1 << eye_bits(config) - 1))
-        leaf.case({"append": 1, "read": 0, "level": level, "number": place, "entry_distance": memory[level, place]})
-    leaf.case({"append": 0, "read": 1, "level": 0, "place": 0})
-    shown = memory[0, 0]
+    places = [(*one, place) for one in product(range(1 + light), range(reflections + 1)) for place in range(5)]
+    for shadows, level, place in places:
+        distance = memory[shadows, level, place] = int(random.integers(1 << eye_bits(config) - 1))
+        leaf.case({"append": 1, "read": 0, "shadows": shadows, "level": level, "number": place})
+        leaf.stimulus[-1] |= {"entry_distance": distance}
+    leaf.case({"append": 0, "read": 1, "shadows": 0, "level": 0, "place": 0})
+    shown = memory[0, 0, 0]
     for _ in range(200):
-        level, place = places[int(random.integers(len(places)))]
+        shadows, level, place = places[int(random.integers(len(places)))]
         number = (place + 1) % 5
         append, read = [(0, 0), (0, 1), (1, 0)][int(random.integers(3))]
         distance = int(random.integers(512))
-        leaf.case({"append": append, "read": read, "level": level, "number": number, "place": place,
-                   "entry_distance": distance}, {"stored_distance": shown})  # fmt: skip
+        leaf.case({"append": append, "read": read, "shadows": shadows, "level": level, "number": number,
+                   "place": place, "entry_distance": distance}, {"stored_distance": shown})  # fmt: skip
         if read:
-            shown = memory[level, place]
+            shown = memory[shadows, level, place]
         if append:
-            memory[level, number] = distance
-    leaf.check()
+            memory[shadows, level, number] = distance
+    leaf.check(spare=True)
