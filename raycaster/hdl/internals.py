@@ -275,7 +275,7 @@ def is_memory(known: Any) -> str | None:
 
 def table_of(known: Any) -> tuple[int, ...] | None:
     """Return the numbers of a tuple that a process indexes, None for anything else."""
-    return known.rom if isinstance(known, _analyze._Rom) else None
+    return known.rom or None if isinstance(known, _analyze._Rom) else None
 
 
 def state_of(tree: Any) -> dict[str, int]:
