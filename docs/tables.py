@@ -67,7 +67,7 @@ def _features(kept: Outcome) -> str:
     """Cells of each engine without and with its optional features, such as a turning camera."""
     rows = []
     for row in kept.figures["designs"]:
-        switches = " ".join(f"{name.upper()}=1" for name in row["options"])
+        switches = " ".join(f"{name.upper()}={value}" for name, value in row["options"].items())
         part = ", one ray unit" if row["module"] == "ray_unit" else ""
         counts = [row[kind] for kind in ("tables", "registers", "multipliers")]
         rows.append([f"`ENGINE={row['engine']}`{part}", f"`{switches}`" if switches else "", *counts])

@@ -8,21 +8,22 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import FEATURES, MOST_RECTANGLES, MOST_REFLECTIONS, Configuration
 from raycaster.convert.digest import verilog_digest
 from raycaster.convert.take_home import TOP
 from raycaster.design.decide import configure
 from raycaster.design.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, configuration_of
+from raycaster.fpga.board import Board, QuartusBoard, board_names, find_board
 from raycaster.fpga.cells import FAMILIES, Area, Family, measure, measure_modules
 from raycaster.output import Console, Table
-from raycaster.rtl.engines import ENGINES
+from raycaster.rtl.engines import ENGINES, SPAN
 from raycaster.runs.jobs import run_jobs, threads
 from raycaster.runs.outcomes import add_keep_option, keep
 from raycaster.runs.waits import announce
@@ -30,26 +31,14 @@ from raycaster.runs.waits import announce
 JOBS = 2
 
 
-@dataclass(frozen=True)
-class Chip:
-    """Resources of a board's chip, from its maker's product tables."""
-
-    board: str
-    name: str
-    family: str
-    elements: int
-    multipliers: int
-
-
-CHIPS = (
-    Chip("DE2", "EP2C35", "cycloneive", 33_216, 70),
-    Chip("DE2-115", "EP4CE115", "cycloneive", 114_480, 532),
-    Chip("DE1-SoC", "5CSEMA5", "cyclonev", 32_070, 261),
-    Chip("DE10-Lite", "10M50", "cycloneive", 49_760, 288),
-    Chip("ULX3S", "LFE5U-85F", "ecp5", 83_640, 156),
-)
-"""Chips of the boards. Multipliers of the Cyclones and the MAX 10 have 9 bits. Yosys lacks the Cyclone II and the
-MAX 10; the Cyclone IV, which has the same logic elements, represents them."""
+_LOOKS = {"turn": 1, "materials": 1, "patterns": 1, "reflections": 2}
+ROOM_DESIGNS: Mapping[str, Mapping[str, Any]] = {
+    "plain": {"turn": 1},
+    "looks": _LOOKS,
+    "lit": {**_LOOKS, "light": 1},
+    "full": {**dict.fromkeys(FEATURES, 1), "reflections": MOST_REFLECTIONS, "rectangles": MOST_RECTANGLES},
+}
+"""Options of designs with the span engine for rooms of any kind, from the smallest to the largest, by name."""
 
 
 Counted = tuple[dict[str, Any], Configuration, str]
@@ -57,15 +46,19 @@ Counted = tuple[dict[str, Any], Configuration, str]
 
 
 def feature_designs() -> list[Counted]:
-    """List each engine's designs without features, with each one alone, and with all.
+    """List each engine's designs without features, with each one alone, and with all; then those of `ROOM_DESIGNS`.
 
     For the seed engine, the module is one ray unit, because a design has many.
     """
     designs = []
     for engine in ENGINES.values():
         top = "ray_unit" if engine.facts.divides else TOP
-        for chosen in ([], *([name] for name in engine.facts.features), engine.facts.features):
-            options = dict.fromkeys(chosen, 1)
+        chosen = [
+            dict.fromkeys(names, 1)
+            for names in ([], *([name] for name in engine.facts.features), engine.facts.features)
+        ]
+        rooms = ROOM_DESIGNS.values() if engine is SPAN else ()
+        for options in (*chosen, *(dict(room) for room in rooms if room not in chosen)):
             labels = {"engine": engine.facts.name, "module": top, "options": options}
             designs.append((labels, configure(engine=engine.facts.name, **options), top))
     return designs
@@ -86,7 +79,8 @@ def measure_features(output: Path, console: Console) -> list[dict[str, Any]]:
     )  # fmt: skip
     rows, plain = [], 0
     for labels, config, _ in designs:
-        area, features = results[config.name], [f"{name.upper()}=1" for name in labels["options"]]
+        area = results[config.name]
+        features = [f"{name.upper()}={value}" for name, value in labels["options"].items()]
         plain = plain if features else area.tables
         more = f"{area.tables / plain - 1:+.1%}"
         table.add_row(" ".join([config.engine, *features]), area.tables, more, area.registers, area.multipliers)
@@ -112,10 +106,10 @@ def show_modules(family: Family, modules: Mapping[str, tuple[int, Area]], flat: 
 def show_chips(areas: Mapping[str, Area], console: Console) -> None:
     """Print how much of each board's chip a design takes, given its cells by family."""
     table = Table("board", "chip", "size", "design", "share", "multipliers", title="what fits")
-    for chip in CHIPS:
-        if area := areas.get(chip.family):
-            share, multipliers = f"{area.elements / chip.elements:.0%}", f"{area.multipliers} of {chip.multipliers}"
-            table.add_row(chip.board, chip.name, chip.elements, area.elements, share, multipliers)
+    for board in (find_board(name, Board) for name in board_names(Board)):
+        if area := areas.get(board.counted_as if isinstance(board, QuartusBoard) else board.flow):
+            share, multipliers = f"{area.elements / board.elements:.0%}", f"{area.multipliers} of {board.multipliers}"
+            table.add_row(board.title, board.chip, board.elements, area.elements, share, multipliers)
     console.print(table)
 
 

@@ -83,6 +83,13 @@ class Board(_Strict):
 
     directory: Path
     title: str
+    chip: str
+    """Order code of the chip."""
+    elements: int
+    """Number of the chip's logic elements, from its maker's data sheet: look-up tables with 4 inputs, or ALMs."""
+    multipliers: int
+    """Number of the chip's multipliers, from the same data sheet; on Intel's chips, those of 9 bits. Excess products
+    become logic."""
     clock: str
     """Signal from the oscillator."""
     source: str
@@ -166,7 +173,9 @@ class QuartusBoard(Board):
 
     flow: Literal["quartus"]
     family: str
-    device: str
+    counted_as: Literal["cycloneive", "cyclonev"]
+    """Family whose cells Yosys counts for the chip. Yosys lacks the Cyclone II and the MAX 10, which have the logic
+    elements of the Cyclone IV."""
     quartus: str
     """Required version of Quartus."""
     dac_clock: str | None = None
@@ -196,13 +205,10 @@ class OpenBoard(Board):
 
     flow: Literal["ecp5", "ice40", "gowin"]
     """Name of an entry of `flows.FLOWS`, and of the folder with modules made of the chip's own cells."""
-    chip: str
     options: tuple[str, ...]
     """nextpnr's options for the chip, its package and its speed grade."""
-    multipliers: int
-    """Number of the chip's multipliers, from its maker's data sheet; excess products become logic."""
     memories: int
-    """Number of the chip's RAM blocks, from the same data sheet."""
+    """Number of the chip's RAM blocks, from its maker's data sheet."""
     single_ports: int = 0
     """Number of the chip's larger RAMs with a single port, from the same data sheet."""
     clock_mhz: float

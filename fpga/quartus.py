@@ -64,7 +64,7 @@ def _settings(board: QuartusBoard, config: Configuration, sources: list[str]) ->
     """Generate the settings file: the chip, the sources, and the pin and standard of each bit of the top's ports."""
     settings = {
         "FAMILY": board.family,
-        "DEVICE": board.device,
+        "DEVICE": board.chip,
         "TOP_LEVEL_ENTITY": TOP,
         "PROJECT_OUTPUT_DIRECTORY": "output_files",
         "VERILOG_INPUT_VERSION": "VERILOG_2001",

@@ -18,10 +18,13 @@ from PIL import Image
 
 from raycaster.buses import USUAL_BAUD
 from raycaster.complaints import LONGEST_SHOWN
-from raycaster.configuration import FEATURES, MOST_RECTANGLES, MOST_REFLECTIONS, WORLD_SIZE, Configuration
+from raycaster.configuration import FEATURES, MOST_RECTANGLES, WORLD_SIZE, Configuration
 from raycaster.design.decide import configure
 from raycaster.design.options import CommandParser, add_build_option
 from raycaster.errors import UserError
+from raycaster.fpga.area import ROOM_DESIGNS
+from raycaster.fpga.board import OpenBoard, board_names, find_board
+from raycaster.fpga.flows import largest_list
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.frames import FIRST_START
 from raycaster.memory_map import BUTTON_NAMES
@@ -30,8 +33,9 @@ from raycaster.play.system import FASTEST
 from raycaster.play.walk import DRAG, STEEPEST, TURNS, WALKS
 from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
 from raycaster.registers import register_map
-from raycaster.rtl.engines import ENGINES, SEED
+from raycaster.rtl.engines import ENGINES, SEED, SPAN
 from raycaster.runs.jobs import processes, run_jobs
+from raycaster.runs.outcomes import RESULTS, kept_outcome
 from raycaster.scene import COMPLAINTS, PATTERN_KEYS, PATTERNS, Scene, load_scene, packaged_scenes
 from raycaster.screens import SCREENS
 from raycaster.sim.simulator import SimulationError
@@ -47,7 +51,7 @@ SCRIPTS = (
 """Scripts in loading order; `settings.js` is generated."""
 
 FIRST_SCENE = "mirror_room"
-FRACTIONS = (0, 4, 8)
+FRACTIONS = (0, 8)
 """Fraction bits of the seed engines on the page."""
 
 WALK_SPEED, TURN_SPEED = 120, 90
@@ -76,17 +80,15 @@ class Model:
         return configure(**self.options)
 
 
-_SPAN = {"engine": "span", "screen": "play"}
 _LOOKS = {"materials": True, "patterns": True, "reflections": 2}
-_FULL = {**_SPAN, **dict.fromkeys(FEATURES, True), "reflections": MOST_REFLECTIONS}
 ROOM_MODELS = (
-    Model("plain", {**_SPAN, "turn": True}, draws=True),
-    Model("looks", {**_SPAN, "turn": True, **_LOOKS}, draws=True),
-    Model("lit", {**_SPAN, "turn": True, **_LOOKS, "light": True}, draws=True),
-    Model("full", {**_FULL, "rectangles": 32}, draws=True),
-    Model("level", {**_FULL, "rectangles": MOST_RECTANGLES}, draws=True),
+    *(
+        Model(name, {"engine": SPAN.facts.name, "screen": "play", **of}, draws=True)
+        for name, of in ROOM_DESIGNS.items()
+    ),
+    *(Model(f"{name}-480", {"engine": SPAN.facts.name, **ROOM_DESIGNS[name]}, draws=True) for name in ("plain", "lit")),
 )
-"""Models for rooms, fastest first."""
+"""Models for rooms: of 320x240 rays, fastest first, then of 640x480."""
 
 MODELS = (
     *ROOM_MODELS,
@@ -160,17 +162,46 @@ def _settings(models: Sequence[Model], *, test: bool) -> dict[str, Any]:
             "buttons": [*WALKS, *TURNS], "keys": keys(WALK_KEYS | TURN_KEYS), "first": FIRST_SCENE,
             "models": [
                 {
-                    "name": model.name, "features": list(model.configuration.features),
+                    "name": model.name, "design": model.name.partition("-")[0],
+                    "features": list(model.configuration.features),
                     "reflections": model.configuration.most_reflections,
                     "rectangles": model.configuration.rectangles,
+                    "columns": model.configuration.screen_geometry.columns,
+                    "rows": model.configuration.screen_geometry.rows,
                 }
                 for model in models if model.draws
             ],
         },
+        "cost": _cost(),
         "game": {"buttons": list(BUTTON_NAMES), "keys": keys(GAME_KEYS)},
         "board": _board(),
         "seed": {"fractions": list(FRACTIONS), "lacks": dict(SEED.facts.lacks)},
     }  # fmt: skip
+
+
+def _cost(path: Path = RESULTS / "features.json") -> dict[str, Any] | None:
+    """Return the cells of `ROOM_DESIGNS` on an ECP5, as last measured, and what the open boards have.
+
+    `runs` of a board are the entries of the longest list for which it has memory, by design. None where no figures are
+    kept, as in an installed program.
+    """
+    if not path.exists():
+        return None
+    kept = kept_outcome(path)
+    counted = [row for row in kept.figures["designs"] if row["engine"] == SPAN.facts.name]
+    rooms = {
+        name: {key: row[key] for key in ("tables", "registers", "multipliers")}
+        for name, options in ROOM_DESIGNS.items() for row in counted if row["options"] == options
+    }  # fmt: skip
+    boards = [find_board(name, OpenBoard) for name in board_names(OpenBoard)]
+    designs = {name: configure(engine=SPAN.facts.name, **options) for name, options in ROOM_DESIGNS.items()}
+    return {"date": kept.date, "rooms": rooms, "boards": [
+        {
+            "title": board.title.partition(",")[0], "elements": board.elements, "multipliers": board.multipliers,
+            "runs": {name: largest_list(board, config) for name, config in designs.items()},
+        }
+        for board in boards
+    ]}  # fmt: skip
 
 
 def _board() -> dict[str, Any]:

@@ -14,7 +14,7 @@ from conftest import called
 from raycaster.convert.take_home import TOP
 from raycaster.design.decide import configure
 from raycaster.fpga import area, flows
-from raycaster.fpga.area import CHIPS
+from raycaster.fpga.board import Board, QuartusBoard, board_names, find_board
 from raycaster.fpga.cells import FAMILIES, Area, measure, measure_modules
 
 SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True, culling=False)
@@ -77,7 +77,7 @@ FEATURES = {
 
 
 def test_fixed_sets_of_designs(tmp_path, monkeypatch, capsys, names_for_digests):
-    """Each feature is counted alone: for the seed engine in one ray unit, for others in designs."""
+    """Each feature is counted alone: for the seed engine in one ray unit, for others in designs. So are the page's."""
     sizes = {"turn": 1, "materials": 10, "patterns": 20, "light": 40}
 
     def count(config, family, directory, top):
@@ -91,12 +91,14 @@ def test_fixed_sets_of_designs(tmp_path, monkeypatch, capsys, names_for_digests)
     area.main(["--features", "--output", str(tmp_path / "area"), "--keep", str(path)])
     designs = json.loads(path.read_text())["figures"]["designs"]
     letters = {name[0]: size for name, size in sizes.items()}
-    assert [(row["engine"], "".join(name[0] for name in row["options"]), row["tables"]) for row in designs] == [
+    featured = [row for row in designs if row["options"].keys() <= sizes.keys()]
+    assert [(row["engine"], "".join(name[0] for name in row["options"]), row["tables"]) for row in featured] == [
         (engine, chosen, 100 + sum(map(letters.get, chosen))) for engine, sets in FEATURES.items() for chosen in sets
     ]
+    assert all(room in [row["options"] for row in designs] for room in area.ROOM_DESIGNS.values())
     shown = capsys.readouterr().out
     assert "seed MATERIALS=1 PATTERNS=1" in shown
-    assert shown.count("+71.0%") == 2
+    assert shown.count("+71.0%") == 2 + sum("light" in room for room in area.ROOM_DESIGNS.values())
 
 
 @pytest.mark.parametrize(
@@ -141,5 +143,6 @@ def test_the_command(tmp_path):
     assert (done.returncode, done.stderr) == (0, "area: usually 3 min\n")
     [counted] = json.loads((tmp_path / "area.json").read_text())["figures"]["families"].values()
     assert counted["multipliers"] == 4
-    assert re.search(rf"ULX3S +LFE5U-85F +83,640 +{counted['elements']:,} +\d+% +4 of 156", done.stdout)
-    assert {chip.family for chip in CHIPS} == set(FAMILIES)
+    assert re.search(rf"ULX3S.* LFE5U-85F-6BG381C +83,640 +{counted['elements']:,} +\d+% +4 of 156", done.stdout)
+    boards = [find_board(name, Board) for name in board_names(Board)]
+    assert {board.counted_as for board in boards if isinstance(board, QuartusBoard)} < set(FAMILIES)

@@ -359,12 +359,13 @@ def test_the_placed_netlist_draws_the_picture(tmp_path, name):
 @pytest.mark.slow_sets(quick=["icebreaker"])
 @pytest.mark.parametrize("board", BOARDS, ids=lambda board: board.name)
 def test_a_small_bitstream(board, tmp_path):
-    """The whole flow runs within the board's multipliers, and every clock is fast enough."""
+    """The whole flow runs within the board's cells, and every clock is fast enough."""
     flow, output = FLOWS[board.flow], tmp_path / "out"
     outcome = make_bitstream(board, small_design(board, rows=60, units=1, allow_underrun=True), output)
     assert not outcome.missed
     logic, _, multipliers, _ = flow.cells
     assert outcome.cells[logic][0] > 300
+    assert outcome.cells[logic][1] == board.elements
     assert outcome.cells[multipliers][1] == board.multipliers
     assert 0 < outcome.cells[multipliers][0] <= board.multipliers
     assert len((output / f"{board.name}.{flow.bitstream}").read_bytes()) > 10_000

@@ -35,7 +35,7 @@ MAY_IMPORT = {
     "sim": ("hdl", "raycaster", "runs", "golden", "rtl", "design", "fit", "convert", "fpga"),
     "debug": ("hdl", "raycaster", "golden", "rtl", "design", "fit", "convert", "sim"),
     "play": ("raycaster", "runs", "golden", "rtl", "design", "sw", "convert", "sim"),
-    "web": ("raycaster", "runs", "golden", "rtl", "design", "sw", "sim", "debug", "play"),
+    "web": ("raycaster", "runs", "golden", "rtl", "design", "sw", "fpga", "sim", "debug", "play"),
     "verif": ("hdl", "raycaster", "runs", "golden", "rtl", "design", "fit", "convert", "fpga", "sim"),
     "report": ("raycaster", "runs", "golden", "rtl", "design", "fit", "convert", "fpga", "sim", "verif"),
     "docs": (

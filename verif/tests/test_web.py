@@ -28,6 +28,7 @@ from raycaster.web.site import MODELS, write_site
 ROOM, TINY = (configure(**PAGE_MODELS[name]).screen_geometry for name in ("plain", "exact"))
 VGA = SCREENS["vga", 240]
 PLAY = LIST_SCREENS["play", 240]
+FINE = LIST_SCREENS["vga", 240].scaled(2)
 MOST_BYTES = 1_200_000
 """Largest size of the whole page, compressed."""
 
@@ -109,16 +110,17 @@ def test_an_address_plants_a_pixel(page, site):
 
 
 TOURS = [("plain", "boxes", 5, ROOM), ("exact", "shadow_hall", 5, TINY), ("full", "lamplight", 5, ROOM)]
-TOURS += [("level", "hall_of_mirrors", 20, PLAY)]
+TOURS += [("full", "hall_of_mirrors", 20, PLAY)]
+TOURS += [("lit-480", "mirror_room", 5, FINE)]
 TOURS += [("looks", name, 20, PLAY) for name in ("checkered_hall", "kaleidoscope", "periscope", "pool", "rooftops")]
 """Models with their scenes, frames and screens; the last five scenes together need every look of a design."""
 
 
-@pytest.mark.slow_sets("looks", "level")
+@pytest.mark.slow_sets("looks", "full-hall", "lit-480")
 @pytest.mark.parametrize(("model", "name", "count", "screen"), TOURS)
 def test_a_tour(page, request, model, name, count, screen):
     """A model draws golden frames, from a scene's camera and on a walk from there with a full turn."""
-    site = request.getfixturevalue("site" if model in PAGE_MODELS else "whole_site")
+    site = request.getfixturevalue("whole_site" if screen in (PLAY, FINE) else "site")
     opened(page, (site / "index.html").as_uri())
     scene = packaged(name)
     x, y, z = scene.camera.position
@@ -165,7 +167,7 @@ def engines(page, scene: str, fraction_bits: int) -> dict:
 
 
 @pytest.mark.slow_sets("whole")
-@pytest.mark.parametrize(("which", "screen", "fraction_bits"), [("site", TINY, 0), ("whole_site", VGA, 4)])
+@pytest.mark.parametrize(("which", "screen", "fraction_bits"), [("site", TINY, 0), ("whole_site", VGA, 8)])
 def test_the_engines_side_by_side(page, request, which, screen, fraction_bits):
     """The exact engine draws the shadows, and afterwards a scene without a light; the seed engine refuses the first."""
     page.goto((request.getfixturevalue(which) / "index.html").as_uri() + "#engines")

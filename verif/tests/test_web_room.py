@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 from dataclasses import replace
 from typing import Any
@@ -13,10 +14,12 @@ from test_web import golden_hash
 
 from raycaster.configuration import FEATURES, Configuration
 from raycaster.design.decide import configure
+from raycaster.fpga.area import ROOM_DESIGNS
 from raycaster.golden.frames import scene_cycles
 from raycaster.program import scene_words
 from raycaster.registers import register_map
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word, table_word
+from raycaster.runs.outcomes import RESULTS
 from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.serial_frames import LEAD, access, framed, writes
 
@@ -224,7 +227,12 @@ def test_clocks_are_the_hardware_s(room):
     state, scene = checked(room), load_scene(packaged_scenes()["boxes"])
     assert state["model"] == "plain"
     assert state["clocks"] == scene_cycles(scene, CONFIG)
-    assert f"{25e6 / state['clocks']:.0f} at 25 MHz" in room.text_content("#room-cost")
+    cost = room.text_content("#room-cost")
+    assert f"{25e6 / state['clocks']:.0f} at 25 MHz" in cost
+    kept = json.loads((RESULTS / "features.json").read_text())["figures"]["designs"]
+    [cells] = [row for row in kept if row["engine"] == "span" and row["options"] == ROOM_DESIGNS["plain"]]
+    assert f"{cells['tables']:,} look-up tables" in cost
+    assert "Boards with room for it and for this frame: Colorlight i9, " in cost
 
 
 def test_a_planted_pixel_is_counted(room):

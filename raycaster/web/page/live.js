@@ -260,6 +260,9 @@ tabs.room = {
         if (event.detail) event.currentTarget.blur();
       });
     }
+    const sizes = new Map(RayCaster.walk.models.map(({ columns, rows }) => [columns, `${columns} x ${rows}`]));
+    find("room-size").replaceChildren(...Array.from(sizes, ([columns, size]) => new Option(size, columns)));
+    find("room-size").addEventListener("change", () => room.version++);
     find("room-plant").addEventListener("change", ({ target }) => {
       RayCaster.plant = target.checked ? (pixels, columns) => (pixels[4 * (30 * columns + 40)] ^= 0x80) : undefined;
       room.version++;
@@ -318,12 +321,13 @@ tabs.room = {
     if (!(await fromAddress())) open(RayCaster.scenes[RayCaster.walk.first], `${RayCaster.walk.first}.toml`);
 
     const report = (frame, { name, shares }) => {
-      const { position } = frame.camera, speed = rate ? `${rate.toFixed(0)} frames per second, ` : "";
+      const { columns, rows } = frame.design, { position } = frame.camera;
+      const speed = rate ? `${rate.toFixed(0)} frames per second, ` : "";
       find("room-status").textContent = `${speed}${counted(frame.clocks, "clock")} and ${counted(frame.runs, "run")} ` +
-        `per frame, ${counted(shares.length, "simulated unit")}`;
+        `per frame of ${columns} x ${rows}, ${counted(shares.length, "simulated unit")}`;
       find("room-place").textContent =
         `Camera at ${position.join(", ")}, yaw ${walker.yaw.toFixed(0)}°, pitch ${walker.pitch.toFixed(0)}°`;
-      showCost(frame, frame.design, room.scene);
+      showCost(frame, name, frame.design, room.scene);
       const { clocks, runs, camera, version } = frame;
       RayCaster.state.room = { hash: pictureHash(frame.pixels), clocks, runs, frames, rate, version, camera, model: name };
       reportChecks();
@@ -351,7 +355,7 @@ tabs.room = {
       begunVersion = version;
       begunCamera = view;
       if (scene) {
-        const { name } = modelOf(scene);
+        const { name } = modelOf(scene, Number(find("room-size").value));
         if (drawing?.name !== name) rate = 0;
         drawing = await Drawing.instead(drawing, name);
       }

@@ -43,12 +43,13 @@ function refusal(scene) {
   return reason ? `The seed engine refuses this scene: ${reason.replace("the seed engine", "it")}.` : "";
 }
 
-// Return the fastest model that draws a scene.
-function modelOf(scene) {
-  return RayCaster.walk.models.find(
+// Return the fastest model that draws a scene, if possible with this number of columns; undefined if there is none.
+function modelOf(scene, columns) {
+  const able = RayCaster.walk.models.filter(
     ({ features, reflections, rectangles }) => reflections >= scene.reflections && rectangles >= scene.rect.length &&
       Object.entries(scene.needs).every(([name, isNeeded]) => !isNeeded || features.includes(name)),
   );
+  return able.find((model) => model.columns === columns) ?? able[0];
 }
 
 // Read a scene file's text into the form that the hardware loads.

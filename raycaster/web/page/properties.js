@@ -2,6 +2,8 @@
 // The fields of the chosen rectangle and of the room, and what the room costs as hardware.
 "use strict";
 
+const FULLEST = 0.9; // share of a chip's look-up tables up to which a design can usually be placed and routed
+
 class Properties {
   constructor(room) {
     this.room = room;
@@ -90,12 +92,26 @@ class Properties {
   }
 }
 
+// Say what hardware for rooms like this one takes, and which boards have it.
+function cellsText(model, runs) {
+  const { rooms, boards, date } = RayCaster.cost ?? {};
+  const { design: name } = RayCaster.walk.models.find(({ name }) => name === model), cells = rooms?.[name];
+  if (!cells) return "";
+  const titles = boards.filter(
+    ({ elements, multipliers, runs: most }) =>
+      cells.tables <= FULLEST * elements && cells.multipliers <= multipliers && runs <= most[name],
+  ).map(({ title }) => title);
+  return ` The ${name} design for 640 x 480 monitors takes ${counted(cells.tables, "look-up table")}, ` +
+    `${counted(cells.registers, "register")} and ${counted(cells.multipliers, "multiplier")} of an ECP5 (counted before ` +
+    `placing, ${date}). Boards with room for it and for this frame: ${titles.join(", ") || "none of those described here"}.`;
+}
+
 // Say how fast hardware with one unit draws this frame, which takes it as many clocks as here, and how to make it.
-function showCost(frame, { columns, rows }, { needs, reflections, rect }) {
+function showCost(frame, model, { columns, rows, scale }, { needs, reflections, rect }) {
   const rates = CLOCKS.map((clock) => `${((clock * 1e6) / frame.clocks).toFixed(0)} at ${clock} MHz`).join(", ");
   find("room-cost").textContent = `Hardware with one unit of the span engine draws this frame of ${columns} x ${rows} in ` +
-    `${counted(frame.clocks, "clock")}. Frames per second: ${rates}. Its Verilog:`;
+    `${counted(frame.clocks, "clock")}. Frames per second: ${rates}.${cellsText(model, frame.runs)} Its Verilog:`;
   const looks = ["materials", "patterns", "light"].filter((look) => needs[look]).map((look) => ` ${look.toUpperCase()}=1`);
   find("room-command").textContent =
-    `make verilog ENGINE=span TURN=1${looks.join("")} REFLECTIONS=${reflections} RECTANGLES=${rect.length}`;
+    `make verilog ENGINE=span SCALE=${scale} TURN=1${looks.join("")} REFLECTIONS=${reflections} RECTANGLES=${rect.length}`;
 }
