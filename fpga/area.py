@@ -20,7 +20,7 @@ from raycaster.design.decide import configure
 from raycaster.design.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, configuration_of
-from raycaster.fpga.board import Board, QuartusBoard, board_names, find_board
+from raycaster.fpga.board import OpenBoard, QuartusBoard, board_names, find_board
 from raycaster.fpga.cells import FAMILIES, Area, Family, measure, measure_modules
 from raycaster.output import Console, Table
 from raycaster.rtl.engines import ENGINES, SPAN
@@ -106,8 +106,10 @@ def show_modules(family: Family, modules: Mapping[str, tuple[int, Area]], flat: 
 def show_chips(areas: Mapping[str, Area], console: Console) -> None:
     """Print how much of each board's chip a design takes, given its cells by family."""
     table = Table("board", "chip", "size", "design", "share", "multipliers", title="what fits")
-    for board in (find_board(name, Board) for name in board_names(Board)):
-        if area := areas.get(board.counted_as if isinstance(board, QuartusBoard) else board.flow):
+    quartus = [find_board(name, QuartusBoard) for name in board_names(QuartusBoard)]
+    others = [find_board(name, OpenBoard) for name in board_names(OpenBoard)]
+    for board, family in [*((one, one.counted_as) for one in quartus), *((one, one.flow) for one in others)]:
+        if area := areas.get(family):
             share, multipliers = f"{area.elements / board.elements:.0%}", f"{area.multipliers} of {board.multipliers}"
             table.add_row(board.title, board.chip, board.elements, area.elements, share, multipliers)
     console.print(table)
