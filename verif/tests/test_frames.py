@@ -43,7 +43,7 @@ def simulated(rows: Sequence[Row], columns: int, units: int, places: int) -> int
         if start is not None:
             drawn[start] = cycle, rows[dealer.row]
         dealer.clock(cycle == 1, start, done, reset=False)
-        collector.clock(cycle == 1, 0, head, reset=False)
+        collector.clock(cycle == 1, head, reset=False)
     return cycle + 1
 
 
