@@ -65,25 +65,15 @@ def run_memory(clk, write, write_place, written, read, read_place, shown, places
         runs = [unsigned(width) for _ in range(count)]
         near_writes, near_reads = ([unsigned(few) for few in counts] for _ in range(2))
         near_write_place, near_read_place, near_written = [write_place], [read_place], [written.word]
+        write_banks, read_banks = unsigned(CHOICES), unsigned(CHOICES)
         if len(counts) == 1:
-            (writes,), (reads,) = near_writes, near_reads
-
-            @always_comb
-            def choose_bank():
-                reads.next = 0
-                if read:
-                    reads.next[read_place[top:low]] = True
-                writes.next = 0
-                if write:
-                    writes.next[write_place[top:low]] = True
-
+            writes, reads, middle = near_writes[0], near_reads[0], low
         else:
             middle = low + bits_for(CHOICES)
             lows = [bits_for(size) for size in sizes[::CHOICES]]
             near_write_place, near_read_place = ([unsigned(one) for one in lows] for _ in range(2))
             near_written = [unsigned(width) for _ in counts]
             writes, reads = unsigned(len(counts)), unsigned(len(counts))
-            write_banks, read_banks = unsigned(CHOICES), unsigned(CHOICES)
             feeds = [
                 bank_feed(
                     clk, write=writes(i), write_banks=write_banks(few, 0), write_place=write_place(lows[i], 0),
@@ -95,14 +85,17 @@ def run_memory(clk, write, write_place, written, read, read_place, shown, places
                 for i, few in enumerate(counts)
             ]  # fmt: skip
 
-            @always_comb
-            def choose_feed():
-                reads.next = 0
-                if read:
-                    reads.next[read_place[top:middle]] = True
-                writes.next = 0
-                if write:
-                    writes.next[write_place[top:middle]] = True
+        # The bank that reads and the one that writes, or their feeds.
+        @always_comb
+        def choose():
+            reads.next = 0
+            if read:
+                reads.next[read_place[top:middle]] = True
+            writes.next = 0
+            if write:
+                writes.next[write_place[top:middle]] = True
+
+        if len(counts) > 1:
 
             @always_comb
             def choose_bank():
