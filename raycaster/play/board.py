@@ -25,7 +25,7 @@ PATIENCE = 0.3
 """Seconds for which an answer may take, besides the time on the line."""
 
 ATTEMPTS = 3
-"""How many times a frame is sent without an answer."""
+"""Number of times that a frame is sent before the board is said not to answer."""
 
 
 class Board:

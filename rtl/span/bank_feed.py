@@ -16,12 +16,12 @@ def bank_feed(
 
     Args:
         write: strobe; one of these banks stores written.
-        write_banks: unsigned, a bit for each bank, of which one is set; read with write, like the two below.
-        write_place: unsigned, a place of a bank.
-        written: unsigned, the run.
+        write_banks: unsigned, a bit for each bank; one is set. Read with write.
+        write_place: unsigned, a place of a bank. Read with write.
+        written: unsigned, the run. Read with write.
         read: strobe; one of these banks reads.
-        read_banks: unsigned, as write_banks; read with the strobe of that name, like the one below.
-        read_place: unsigned, a place of a bank.
+        read_banks: unsigned, a bit for each bank; one is set. Valid with the strobe read.
+        read_place: unsigned, a place of a bank. Valid with the strobe read.
         near_writes: unsigned output, a bit for each bank; strobe, in the next cycle.
         near_write_place: unsigned output; valid with near_writes.
         near_written: unsigned output; valid with near_writes.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The memories of two lists, of which one is drawn and the other one is shown."""
+"""The memory of the list that is drawn, and that of the list that is shown."""
 
 from myhdl import always_comb, block, instances
 

@@ -73,7 +73,7 @@ def sweep(
         if tested.start >= column:
             left.next = tested.start
 
-    # Of two entries on the same axis, the one of the lower rank is nearer.
+    # Of two entries on one axis, the one with the lower rank is nearer.
     @always_comb
     def see_ranks():
         tested_rank.next = concat(tested.distance, tested.index)

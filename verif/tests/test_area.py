@@ -77,7 +77,7 @@ FEATURES = {
 
 
 def test_fixed_sets_of_designs(tmp_path, monkeypatch, capsys, names_for_digests):
-    """Each feature is counted alone: for the seed engine in one ray unit, for others in designs. So are the page's."""
+    """Each feature is counted alone: for the seed engine in one ray unit, else in designs. The page's rooms follow."""
     sizes = {"turn": 1, "materials": 10, "patterns": 20, "light": 40}
 
     def count(config, family, directory, top):

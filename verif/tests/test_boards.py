@@ -125,9 +125,9 @@ def test_lists_fit_the_chip(name, options, most):
 
 
 def test_lists_fill_single_ports():
-    """4,096 bits are 512 places of 8 bits, three of which have a column of 320 and 12 bits of colour.
+    """A list that needs more block RAM than the chip has fills two RAMs with a single port, of 16,384 x 16 bits.
 
-    Lists that need more blocks than the chip has are each in two RAMs of 16,384 words of 16 bits.
+    A run has 9 bits for a column of 320 and 12 of colour, so three blocks of 512 x 8 bits side by side hold 512 runs.
     """
     board = find_board("icebreaker", OpenBoard)
     config = configure(engine="span", scale=1, colour_bits=4)

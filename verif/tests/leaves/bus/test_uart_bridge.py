@@ -124,7 +124,7 @@ def test_uart_bridge(patience, leaf_of, random):
                 send([*access(address, some(2)), 1 << 31 | other, *access(other | 0xFFF0, some(4))])
             case 3:  # a wrong bit
                 spoil(access(address, some(4)))
-            case 4:  # the answer is cut by the next frame's, which is carried out before its words are overwritten
+            case 4:  # the next frame cuts this answer short, and is carried out before a third one overwrites its words
                 send(access(address, read=20), hears=False)
                 drive([1] * (CYCLES * int(random.integers(10, 40))))
                 send(access(other, some(1)), waits=False)
