@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`frame_list` with units that draw at any pace, at a monitor: every picture that it shows is a whole one.
-
-Frames are in time or late, fill their list exactly or have a run too many, or are black; resets come in the middle.
-"""
+"""Leaf tests of the blocks that deal rows to units and collect their runs in a list."""
 
 from collections import Counter
 
@@ -15,18 +12,118 @@ from list_vectors import (
     Queue,
     Unit,
     any_frame,
+    any_row,
+    entry,
     list_screen,
     packed,
     pixels_of,
     side_by_side,
 )
-from vectors import named
+from vectors import by, named
 
-from raycaster.hdl.signals import unsigned
+from raycaster.hdl.signals import bit, bits_for, unsigned
 from raycaster.rtl.common.interfaces import FrameEvents, Scan
 from raycaster.rtl.span.frame_list import frame_list
-from raycaster.rtl.span.lists import ListEntry
+from raycaster.rtl.span.frame_switch import frame_switch
+from raycaster.rtl.span.lists import ListEntry, entry_bits
+from raycaster.rtl.span.row_collector import row_collector
+from raycaster.rtl.span.row_dealer import row_dealer
 from raycaster.sim.register_model import Switch
+
+
+@by(rows=[1, 13], units=[1, 2, 3, 5])
+def test_row_dealer(rows, units, leaf_of, random):
+    """Units that are busy, idle or without room for any time; frames that are dropped in the middle."""
+    ports = {"room": units, "done": units, "start": lambda: unsigned(units)}
+    leaf, model = leaf_of(row_dealer, rows=rows, units=units, **ports), Dealer(rows, units)
+    leaf.case({"reset": 1})
+    finished = at_once = 0
+    for _ in range(3000):
+        reset = int(random.random() < 0.01)
+        idle = model.row == rows or not (model.dealing or model.settles or model.first_row)
+        new_frame = int(idle and not model.busy and random.random() < 0.3)
+        done = {unit for unit in model.busy if random.random() < 0.3}
+        room = [random.random() < 0.8 for _ in range(units)]
+        start = model.start(room, done)
+        inputs = {"room": sum(flag << unit for unit, flag in enumerate(room)), "done": sum(1 << unit for unit in done)}
+        leaf.case({"reset": reset, "new_frame": new_frame, **inputs})
+        started = 0 if start is None else 1 << start
+        leaf.expect({"first_row": model.first_row, "next_row": start is not None, "start": started})
+        at_once += start in done
+        model.clock(bool(new_frame), start, done, bool(reset))
+        finished += start is not None and model.row == rows
+    leaf.check(settled=1)
+    assert finished > 20
+    assert at_once > 20 or rows == 1 or units > 2
+
+
+FEW_COLUMNS, FEW_ROWS, FEW_ENTRIES = 6, 3, 10
+
+
+@by(units=[1, 2, 3], pause=[0.0, 0.5])
+def test_row_collector(units, pause, leaf_of, random):
+    """Rows of any number of runs, lists exactly full and with a run too many, resets in the middle."""
+    width = entry_bits(FEW_ENTRIES)
+    made = {name: lambda: ListEntry(FEW_COLUMNS, PIXEL_BITS) for name in ("head", "entry")}
+    sizes = {"columns": FEW_COLUMNS, "rows": FEW_ROWS, "units": units, "entries": FEW_ENTRIES}
+    ports = {"offered": bit, "place": width, "turn": bits_for(units)}
+    leaf = leaf_of(row_collector, **sizes, **ports, **made)
+    model = Collector(**sizes)
+    leaf.case({"reset": 1})
+    runs, ends = [], set()
+    for _ in range(3000):
+        reset = int(leaf.cycle > 1 and random.random() < 0.005)
+        new_frame = int(leaf.cycle == 1 or (not reset and model.rows_left == 0 and random.random() < 0.3))
+        head = runs[0] if runs and random.random() >= pause else None
+        full = model.full(head)
+        leaf.case({"reset": reset or int(full), "new_frame": new_frame, "offered": head is not None})
+        leaf.stimulus[-1] |= entry("head", head or (int(random.integers(FEW_COLUMNS + 1)), 0))
+        leaf.expect({"take": model.take(head), "full": full, "write": model.written is not None})
+        leaf.expect({"whole": model.written is not None and model.written[2]})
+        leaf.expect({"turn": model.turn}, when=units > 1 and model.rows_left)
+        if model.written:
+            leaf.expect({"place": model.written[0], **entry("entry", model.written[1])})
+            if model.written[2]:
+                ends.add(len(model.taken))
+        if model.take(head):
+            runs.pop(0)
+        if full:
+            ends.add("full")
+        model.clock(bool(new_frame), head, bool(reset or full))
+        if new_frame:
+            # After the frame comes a run that belongs to none.
+            runs = [run for _ in range(FEW_ROWS + 1) for run in any_row(random, FEW_COLUMNS)]
+        elif reset or full:
+            runs = []
+    leaf.check(settled=3)
+    assert {FEW_ROWS, FEW_ENTRIES, "full"} <= ends
+
+
+def test_frame_switch(leaf_of, random):
+    """Frames in time, late ones, abandoned and black ones, with any number of cycles in between."""
+    leaf, model = leaf_of(frame_switch, events=FrameEvents), Switch()
+    leaf.case({"reset": 1})
+    seen = dict.fromkeys(("drawn", "shown", "again", "late", "list_full", "black"), 0)
+    for number in range(6000):
+        cycle = leaf.cycle
+        reset = int(random.random() < 0.002)
+        start_screen = random.random() < (0.3 if model.state == "wait" else 0.04)
+        whole, full, run = (bool(random.random() < chance) for chance in (0.05, 0.02, 0.8))
+        whole, full = whole and model.state == "draw", full and model.state == "draw" and not whole
+        leaf.case({"reset": reset, "start_screen": start_screen, "run": run, "whole": whole, "full": full})
+        events = model.events(start_screen, whole, full, cycle)
+        new_frame, take_scene = model.state == "begin" and run, model.state == "wait" and start_screen
+        leaf.expect(named("events", events))
+        leaf.expect({"take_scene": take_scene, "new_frame": new_frame, "stop": model.state == "draw" and full})
+        leaf.expect({"upper": model.upper, "view_run": model.shown is not None})
+        seen = {name: seen[name] + bool(events.get(name)) for name in seen}
+        seen["black"] += model.state == "begin" and not run
+        model.clock(start_screen, run, number, whole, full, cycle)
+        if reset:
+            model.reset()
+    leaf.check(settled=1)
+    assert min(seen.values()) > 20
+
 
 COLUMNS, ROWS, ENTRIES = 8, 4, 18
 
@@ -37,6 +134,10 @@ COLUMNS, ROWS, ENTRIES = 8, 4, 18
     [(1, 1, 1, 1, 0), (1, 1, 2, 2, 0), (2, 1, 2, 1, 8), (3, 1, 1, 2, 11), (1, 2, 1, 1, 0), (3, 2, 1, 1, 16)],
 )
 def test_frame_list(units, pixels, doubling, clocks, queue, pace, leaf_of, random):
+    """Every picture that it shows is a whole one.
+
+    Frames are in time or late, fill their list exactly or have a run too many, or are black; resets come in the middle.
+    """
     width = len(ListEntry(COLUMNS, PIXEL_BITS).word)
     sizes = {"columns": COLUMNS, "rows": ROWS, "entries": ENTRIES, "units": units}
     leaf = leaf_of(
