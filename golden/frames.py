@@ -103,6 +103,13 @@ def refreshes(cycles: int, config: Configuration) -> int:
     return cycles // config.screen_geometry.frame_cycles + 1
 
 
+def shown_hz(cycles: int, config: Configuration) -> str:
+    """Return the frames per second that a monitor shows if each takes these cycles, and its refresh divided by what."""
+    screen = config.screen_geometry
+    times, hz = refreshes(cycles, config), screen.clock_hz / screen.frame_cycles
+    return f"{hz:.0f}" if times == 1 else f"{hz:.0f}/{times} = {hz / times:.0f}"
+
+
 def screens_before(scene: Scene, config: Configuration, reflections: int | None = None) -> int:
     """Return the screens from the StartScreen at which a scene goes live to that at which its first frame is shown.
 

@@ -384,13 +384,6 @@ def _frames_per_second(configuration: Configuration, row_cycles: int) -> float:
     return screen.clock_hz / (screen.rows * row_cycles)
 
 
-def shown_hz(configuration: Configuration, frame_cycles: int) -> str:
-    """Return the frames per second that a monitor shows if each takes this long, and its refresh divided by what."""
-    screen = configuration.screen_geometry
-    times, hz = frames.refreshes(frame_cycles, configuration), screen.clock_hz / screen.frame_cycles
-    return f"{hz:.0f}" if times == 1 else f"{hz:.0f}/{times} = {hz / times:.0f}"
-
-
 def check_list(run: Design) -> None:
     """Check that a list holds a frame of the scene; without lists, do nothing.
 
@@ -412,7 +405,7 @@ def _cells(outcome: Outcome) -> list[str | Text]:
     screen, frame = configuration.screen_geometry, result["frame_cycles"]
     shares, alone, shown = ["", ""], "", ""
     if configuration.facts.whole_frames:
-        alone, shown = f"{screen.clock_hz / frame:.0f}", shown_hz(configuration, frame)
+        alone, shown = f"{screen.clock_hz / frame:.0f}", frames.shown_hz(frame, configuration)
     else:
         shares = [f"{row / screen.row_cycles:.0%}", f"{group / configuration.group_budget:.0%}"]
         alone = f"{_frames_per_second(configuration, row):.0f}" if row else ""

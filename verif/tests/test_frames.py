@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from list_vectors import Collector, Dealer, Queue, row_of
 
+from raycaster.cli import scenes
 from raycaster.golden.frames import FIRST_START, frame_cycles
 from raycaster.golden.spans import Row
+from raycaster.scene import packaged_scenes
 
 
 def any_row(random: np.random.Generator, columns: int) -> Row:
@@ -60,3 +62,15 @@ def test_frame_cycles(units, spare, random):
 def test_a_frame_of_one_unit_takes_the_time_of_its_rows(random):
     rows = [any_row(random, 9) for _ in range(12)]
     assert frame_cycles(rows, 9) == FIRST_START + sum(row.cycles for row in rows)
+
+
+def test_the_scenes_of_a_small_design(monkeypatch, capsys):
+    """One scene needs more runs than the lists hold; in another, a frame takes longer than a refresh."""
+    few = [packaged_scenes()[name] for name in ("boxes", "facing_mirrors", "pool")]
+    monkeypatch.setattr(scenes, "packaged_for", lambda options: few)
+    scenes.main(["--engine", "span", "--rows", "240", "--scale", "1", "--list", "8400"])
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    shown = {row[0]: " ".join(row[4:]) for row in rows if len(row) > 4}
+    assert (
+        shown.items() >= {"boxes": "60", "facing_mirrors": "60/2 = 30", "pool": "never: more than 8,400 runs"}.items()
+    )

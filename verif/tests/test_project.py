@@ -27,7 +27,7 @@ MAY_IMPORT = {
     "golden": ("raycaster",),
     "rtl": ("hdl", "raycaster"),
     "design": ("hdl", "raycaster", "runs", "rtl"),
-    "cli": ("raycaster", "rtl", "design"),
+    "cli": ("raycaster", "runs", "golden", "rtl", "design"),
     "sw": ("raycaster", "runs", "design"),
     "fit": ("raycaster", "golden", "design"),
     "convert": ("hdl", "raycaster", "runs", "rtl", "design", "fit"),
