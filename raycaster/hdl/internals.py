@@ -5,6 +5,7 @@ No other file of the package touches them. They may change with any version of M
 """
 
 import ast
+import copy
 import functools
 import importlib
 import inspect
@@ -12,12 +13,15 @@ import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, nullcontext
 from io import StringIO
+from types import CellType, CodeType, FunctionType
 from typing import Any
 
 from myhdl import ConcatSignal, concat, intbv
+from myhdl._always_comb import _AlwaysComb
 from myhdl._block import _Block as Block
 from myhdl._enum import EnumItemType, EnumType
 from myhdl._extractHierarchy import _getMemInfo, _isMem
+from myhdl._instance import _getCallInfo as calling_block
 from myhdl._instance import _Instantiator as Process
 from myhdl._ShadowSignal import _ShadowSignal as ShadowSignal
 from myhdl._ShadowSignal import _SliceSignal as SliceSignal
@@ -67,6 +71,57 @@ class DerivedClock(SignalType):
         """Create it from its source, which has the same edges or more."""
         super().__init__(bool(0))
         self._posedgeWaiters = self._Edges(self, source)
+
+
+class Assignment(_AlwaysComb):
+    """A combinational process of one assignment: a call's first argument is driven, its second one has the value."""
+
+    def __init__(self, value: FunctionType, block: Any):
+        """Create it from the call's second argument, a lambda, and from the block, as `calling_block` returns it."""
+        self._tree, code = _assignment(value.__code__.co_filename, value.__code__)
+        cells = dict(zip(value.__code__.co_freevars, value.__closure__ or (), strict=True))
+        closure = tuple(cells.get(name) or CellType(block.symdict[name]) for name in code.co_freevars)
+        super().__init__(FunctionType(code, value.__globals__, code.co_name, None, closure), block)
+
+    @property
+    def ast(self) -> Any:
+        """A syntax tree of its own for MyHDL, which changes it."""
+        return copy.deepcopy(self._tree)
+
+
+@functools.cache
+def _assignment(file: str, value: CodeType) -> tuple[Any, CodeType]:  # equal code may be in two files
+    """Return the syntax tree and the code of the process to which a lambda gives its value."""
+    calls = _calls("".join(inspect.findsource(value)[0])).get(value.co_firstlineno, [])
+    if len(calls) != 1:
+        raise SyntaxError("expected one lambda in a line", (file, value.co_firstlineno, 0, ""))
+    [call] = calls
+    [target, function] = call.args
+    driven: Any = ast.Attribute(target, "next", ast.Store())
+    names = {node.id for node in ast.walk(target) if isinstance(node, ast.Name)}
+    arguments = [ast.arg(name) for name in sorted({*value.co_freevars, *names})]
+    root = next(node.id for node in ast.walk(target) if isinstance(node, ast.Name))
+    none: Any = ast.arguments([], [], None, [], [], None, [])
+    process = ast.FunctionDef(root, none, [ast.Assign([driven], function.body)], [])
+    block = ast.FunctionDef("block", ast.arguments([], arguments, None, [], [], None, []), [process], [])
+    tree: Any = ast.Module([process], [])
+    for node in (process, block):
+        ast.fix_missing_locations(ast.copy_location(node, call))
+    tree.sourcefile, tree.lineoffset = file, 0
+    code = compile(ast.Module([block], []), file, "exec")
+    for _ in range(2):
+        code = next(one for one in code.co_consts if isinstance(one, CodeType))
+    return tree, code
+
+
+@functools.cache
+def _calls(source: str) -> dict[int, list[Any]]:
+    """Return all calls with a signal and a lambda, by the line of the lambda."""
+    found: dict[int, list[Any]] = {}
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Call) and len(node.args) == 2 and isinstance(node.args[1], ast.Lambda):
+            found.setdefault(node.args[1].lineno, []).append(node)
+    return found
 
 
 def bits_of(part: SliceSignal) -> tuple[SignalType, int, int]:

@@ -9,6 +9,7 @@ import re
 import sys
 import textwrap
 from collections.abc import Mapping, Sequence
+from itertools import takewhile
 from typing import Any
 
 from myhdl import ResetSignal
@@ -44,7 +45,9 @@ class Comments:
 
     def of_process(self, function: Any) -> str:
         """Return the comment above a process, as one line."""
-        words = " ".join(line.lstrip("# ").rstrip() for line in (inspect.getcomments(function) or "").splitlines())
+        lines = inspect.findsource(function)[0][: function.__code__.co_firstlineno - 1]
+        above = [*takewhile(lambda line: line.lstrip().startswith("#"), reversed(lines))]
+        words = " ".join(line.strip().lstrip("# ") for line in reversed(above))
         return f"// {self._in_verilog(words)}\n" if words else ""
 
     def of_ports(self, ports: Sequence[str]) -> Mapping[str, str]:

@@ -1,16 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""Operators of MyHDL as functions that make the signal for their result: `total, add = plus(a, b, 9)`.
+"""Processes of one assignment as calls, each an `assign` in Verilog: `see_carry = assign(carry, lambda: a and b)`.
 
-Each returns a new signal and the process that drives it, an `assign` in Verilog. The operands are signals or integers.
-A block gives the signal a variable of its own, which is its name in Verilog; so names here begin with an underscore.
+The others are operators, and make the signal for their result: `total, add = plus(a, b, 9)`. The operands are signals
+or integers. A block gives the signal a variable of its own, which is its name in Verilog; so names here begin with an
+underscore.
 """
 
+from collections.abc import Callable
+from types import FunctionType
 from typing import Any
 
 from myhdl import Signal, always_comb
 
-from raycaster.hdl.internals import Process, SignalType, adopted
+from raycaster.hdl.internals import Assignment, Process, SignalType, adopted, calling_block
 from raycaster.hdl.signals import initial
+
+
+def assign(target: SignalType, value: Callable[[], Any]) -> Assignment:
+    """Return a process that drives a signal with the value of a lambda: `assign(carry, lambda: a and b)`."""
+    assert isinstance(value, FunctionType)
+    return Assignment(value, calling_block())
 
 
 def plus(_a: Any, _b: Any, width: int) -> tuple[SignalType, Process]:

@@ -3,10 +3,11 @@
 
 from collections.abc import Callable
 
-from myhdl import always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, side_by_side, tied, unconnected, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.interfaces import GroupFate, RayFate, Steps
 from raycaster.rtl.common.records import Pixel, Rect, Surface
 from raycaster.rtl.common.widths import unit_bits
@@ -67,9 +68,7 @@ def ray_caster(
         for number in range(config.units)
     ]  # fmt: skip
 
-    @always_comb
-    def join_pixels():
-        pixels.next = together
+    join_pixels = assign(pixels, lambda: together)
 
     if predicts:
         culler = group_culler(
@@ -78,21 +77,12 @@ def ray_caster(
         )  # fmt: skip
 
     if config.culling or config.materials:
-
-        @always_comb
-        def judge_alive():
-            fate.any_alive.next = alive != 0
+        judge_alive = assign(fate.any_alive, lambda: alive != 0)
 
     if config.light:
-
-        @always_comb
-        def judge_light():
-            fate.any_in_question.next = in_question != 0
+        judge_light = assign(fate.any_in_question, lambda: in_question != 0)
 
     if ends_early(config):
-
-        @always_comb
-        def judge_towards():
-            fate.any_towards.next = towards != 0
+        judge_towards = assign(fate.any_towards, lambda: towards != 0)
 
     return instances()

@@ -7,6 +7,7 @@ from myhdl import always, always_comb, always_seq, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, bits_for, derived_clock, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.buffered.ray_caster import ray_caster
 from raycaster.rtl.common.clock_gate import clock_gate
 from raycaster.rtl.common.interfaces import Place, Scan
@@ -70,14 +71,10 @@ def ray_caster_renderer(
     ]  # fmt: skip
 
     # The row counter's lowest bit chooses the half of the line buffer that is written.
-    @always_comb
-    def select_line_buffer():
-        line_buf_sel.next = place.row[0]
+    select_line_buffer = assign(line_buf_sel, lambda: place.row[0])
 
     # Max comparison: the ray caster runs while the row has columns left.
-    @always_comb
-    def compare_max():
-        enable.next = rendering and picture.run and (place.column_offset != groups)
+    compare_max = assign(enable, lambda: rendering and picture.run and (place.column_offset != groups))
 
     @always_comb
     def report():
@@ -86,23 +83,17 @@ def ray_caster_renderer(
         progress.underrun.next = scan.start_row and enable
 
     # When done, the group is written, the next one takes its place, and the ray caster restarts.
-    @always_comb
-    def finish_group():
-        restart.next = reset or scan.start_screen or scan.start_row or done
+    finish_group = assign(restart, lambda: reset or scan.start_screen or scan.start_row or done)
 
     # The seed's reset delay: in the second cycle of a reset, the comparison with Max sees the new column offset.
     @always(clk.posedge)
     def delay_reset():
         reset_delay.next = restart
 
-    @always_comb
-    def join_resets():
-        reset_ray_caster.next = restart or reset_delay
+    join_resets = assign(reset_ray_caster, lambda: restart or reset_delay)
 
     # The ray caster is idle between rows, and each row begins with its reset.
-    @always_comb
-    def wake():
-        caster_awake.next = enable or reset_ray_caster
+    wake = assign(caster_awake, lambda: enable or reset_ray_caster)
 
     # Rows are rendered from StartScreen to the last row's handover.
     @always_seq(clk.posedge, reset=reset)

@@ -5,6 +5,7 @@ from myhdl import Signal, always_comb, always_seq, block, instances
 
 from raycaster.configuration import FEATURES, Configuration
 from raycaster.hdl.signals import bit, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.registers import register_map
 from raycaster.rtl.common.widths import CYCLE_BITS, RGB_BITS, WORD_BITS
 from raycaster.rtl.scene.scene_word import scene_word
@@ -125,9 +126,7 @@ def avalon_interface(
             tied(registers["table"].address, len(bus.address)), tied(table_word(config), WORD_BITS),
         )  # fmt: skip
 
-        @always_comb
-        def find_table():
-            at_table.next = bus.address == table_address
+        find_table = assign(at_table, lambda: bus.address == table_address)
 
         @always_comb
         def read_table():
@@ -179,9 +178,7 @@ def avalon_interface(
     if config.light:
         light_address = tied(registers["light"].address, len(bus.address))
 
-        @always_comb
-        def find_light():
-            at_light.next = bus.address == light_address
+        find_light = assign(at_light, lambda: bus.address == light_address)
 
     if config.turn:
         up_address = tied(registers["up"].address, len(bus.address))
@@ -194,10 +191,7 @@ def avalon_interface(
                 at_camera.next = False
 
     else:
-
-        @always_comb
-        def find_camera():
-            at_camera.next = bus.address == camera_address
+        find_camera = assign(at_camera, lambda: bus.address == camera_address)
 
     # The shadow is copied in the cycle after the write that requests it.
     @always_seq(clk.posedge, reset=reset)
@@ -291,9 +285,7 @@ def avalon_interface(
             live=live_background,
         )  # fmt: skip
 
-        @always_comb
-        def decode_background():
-            select_background.next = bus.address == background_address
+        decode_background = assign(select_background, lambda: bus.address == background_address)
 
         # More reflections than the design has count as all of them.
         @always_comb

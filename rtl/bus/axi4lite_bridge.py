@@ -4,6 +4,7 @@
 from myhdl import always_comb, always_seq, block, instances
 
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.interfaces import BusPort
 from raycaster.rtl.common.widths import LANES, WORD_BITS
 
@@ -68,9 +69,7 @@ def axi4lite_bridge(clk, reset, s_axi, avm_m0):
             s_axi.awvalid and s_axi.wvalid and not write_taken and not read_waits and (s_axi.bready or not responding)
         )
 
-    @always_comb
-    def choose_read():
-        asking.next = s_axi.arvalid and not writing and not reading and not answer_kept
+    choose_read = assign(asking, lambda: s_axi.arvalid and not writing and not reading and not answer_kept)
 
     @always_comb
     def request():
@@ -101,9 +100,7 @@ def axi4lite_bridge(clk, reset, s_axi, avm_m0):
             reading.next = False
         answer_kept.next = answered and not s_axi.rready
 
-    @always_comb
-    def find_answer():
-        answered.next = avm_m0.readdatavalid or answer_kept
+    find_answer = assign(answered, lambda: avm_m0.readdatavalid or answer_kept)
 
     @always_comb
     def answer():

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The bits of a serial line in time."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.hdl.signals import bits_for, tied, unsigned
-from raycaster.hdl.verbs import plus
+from raycaster.hdl.verbs import assign, plus
 
 FRACTION = 8
 """Bits of a clock period's share of a bit, at least: the rate is right within 0.2 per cent."""
@@ -33,9 +33,7 @@ def bit_timer(clk, restart, tick, clock_hz: int, baud: int, middle: bool):
     phase = unsigned(bits)
     advanced, advance = plus(phase, share, bits + 1)
 
-    @always_comb
-    def overflow():
-        tick.next = advanced[bits]
+    overflow = assign(tick, lambda: advanced[bits])
 
     @always(clk.posedge)
     def keep():

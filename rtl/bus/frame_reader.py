@@ -4,6 +4,7 @@
 from myhdl import always, always_comb, always_seq, block, instances
 
 from raycaster.hdl.signals import Unset, bit, bits_for, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.bus.frame_check import CHECK_BITS, RESIDUE, frame_check
 from raycaster.rtl.bus.uart_transmitter import DATA_BITS
 from raycaster.rtl.common.widths import WORD_BITS
@@ -55,9 +56,7 @@ def frame_reader(clk, reset, received, data, good, words, place, shown, places: 
             plain.next = data ^ ESCAPED
 
     # What comes after a reset is the rest of a frame.
-    @always_comb
-    def begin():
-        fresh.next = is_flag or reset
+    begin = assign(fresh, lambda: is_flag or reset)
 
     @always_comb
     def gather():

@@ -4,6 +4,7 @@
 from myhdl import Signal, always_comb, always_seq, block, instances, intbv
 
 from raycaster.hdl.signals import bit, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.registers import register_map
 from raycaster.rtl.common.widths import WORD_BITS
 
@@ -86,8 +87,6 @@ def frame_registers(clk, reset, bus, events, rect_readback, readback, rectangles
             word.next[late_bit] = late
             word.next[full_bit] = list_full
 
-    @always_comb
-    def read():
-        readback.next = word
+    read = assign(readback, lambda: word)
 
     return instances()

@@ -4,6 +4,7 @@
 from myhdl import Signal, always_comb, always_seq, block, enum, instances
 
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.bus.frame_check import CHECK_BITS, frame_check
 from raycaster.rtl.bus.uart_transmitter import DATA_BITS
 from raycaster.rtl.common.widths import WORD_BITS
@@ -76,9 +77,7 @@ def frame_writer(clk, reset, start, valid, word, last, ready, sending, data, acc
         elif escaped:
             data.next = plain ^ ESCAPED
 
-    @always_comb
-    def proceed():
-        advance.next = sending and accepted and not start and (is_flag or escaped or not special)
+    proceed = assign(advance, lambda: sending and accepted and not start and (is_flag or escaped or not special))
 
     @always_comb
     def count_words():

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The receiver of a serial port."""
 
-from myhdl import always_comb, always_seq, block, instances
+from myhdl import always_seq, block, instances
 
 from raycaster.hdl.signals import bit, bits_for, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.bus.bit_timer import bit_timer
 from raycaster.rtl.bus.uart_transmitter import DATA_BITS, FRAME_BITS
 from raycaster.rtl.common.synchroniser import synchroniser
@@ -30,9 +31,7 @@ def uart_receiver(clk, reset, uart_rx, received, data, clock_hz: int, baud: int)
     synchronised = synchroniser(clk, reset, value=uart_rx, held=line)
     timer = bit_timer(clk, restart=falls, tick=middle, clock_hz=clock_hz, baud=baud, middle=True)
 
-    @always_comb
-    def see_start():
-        falls.next = (bits_left == 0) and was_high and not line
+    see_start = assign(falls, lambda: (bits_left == 0) and was_high and not line)
 
     @always_seq(clk.posedge, reset=reset)
     def follow():

@@ -4,6 +4,7 @@
 from myhdl import always, always_comb, always_seq, block, instances
 
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.interfaces import BusPort
 from raycaster.rtl.common.widths import LANES, WORD_BITS
 
@@ -44,9 +45,7 @@ def wishbone_bridge(clk, reset, wb, avm_m0):
     """
     selected, reading, still_wanted = bit(), bit(), bit()
 
-    @always_comb
-    def select():
-        selected.next = wb.cyc and wb.stb
+    select = assign(selected, lambda: wb.cyc and wb.stb)
 
     @always_comb
     def request():

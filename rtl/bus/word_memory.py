@@ -7,6 +7,7 @@ from myhdl import Signal, always, always_comb, always_seq, block, instances, int
 
 from raycaster.hdl.given import load_words
 from raycaster.hdl.signals import bit
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import WORD_BITS
 
 
@@ -62,8 +63,6 @@ def word_memory(clk, reset, access, strobe, address, data, words: int, program: 
     def finish():
         done.next = access.select and not done
 
-    @always_comb
-    def answer():
-        access.ready.next = done
+    answer = assign(access.ready, lambda: done)
 
     return instances()

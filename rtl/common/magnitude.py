@@ -4,6 +4,7 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.hdl.signals import signed
+from raycaster.hdl.verbs import assign
 
 
 @block
@@ -17,9 +18,7 @@ def magnitude(value, result):
     bits = len(result)
     opposite = signed(len(value))
 
-    @always_comb
-    def negate():
-        opposite.next = -value
+    negate = assign(opposite, lambda: -value)
 
     @always_comb
     def choose():

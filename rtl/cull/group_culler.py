@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit, signed, tied, unsigned
-from raycaster.hdl.verbs import times
+from raycaster.hdl.verbs import assign, times
 from raycaster.rtl.common.interfaces import Place, Rects, Vector
 from raycaster.rtl.common.records import Facet, Walk, WideRect
 from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, wide_walk_bits
@@ -66,9 +66,7 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
         may_hit=found, config=config,
     )  # fmt: skip
 
-    @always_comb
-    def compare_with_first():
-        first_group.next = (place.row == 0) and (place.column_offset == 0)
+    compare_with_first = assign(first_group, lambda: (place.row == 0) and (place.column_offset == 0))
 
     # A new scene goes live only before a frame's first group.
     @always(clk.posedge)
@@ -76,9 +74,7 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
         if first_group:
             rects_known.next = done
 
-    @always_comb
-    def start_prediction():
-        start_sweep.next = start_group and rects_known
+    start_prediction = assign(start_sweep, lambda: start_group and rects_known)
 
     @always(clk.posedge)
     def choose_group():

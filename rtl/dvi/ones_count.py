@@ -4,6 +4,7 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.hdl.signals import unsigned
+from raycaster.hdl.verbs import assign
 
 
 @block
@@ -29,8 +30,6 @@ def ones_count(bits, count):
         half_0.next = pair_0 + pair_1
         half_1.next = pair_2 + pair_3
 
-    @always_comb
-    def add_halves():
-        count.next = half_0 + half_1
+    add_halves = assign(count, lambda: half_0 + half_1)
 
     return instances()

@@ -4,7 +4,7 @@
 from myhdl import always_comb, always_seq, block, concat, instances
 
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import plus
+from raycaster.hdl.verbs import assign, plus
 from raycaster.rtl.dvi.ones_count import ones_count
 
 SYMBOL_BITS = 10
@@ -45,22 +45,13 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
     word_count = ones_count(low_bits, word_ones)
 
     # XNOR if XOR would leave more transitions.
-    @always_comb
-    def choose_chain():
-        chain_xnor.next = ones > 4 or (ones == 4 and not data[0])
+    choose_chain = assign(chain_xnor, lambda: ones > 4 or (ones == 4 and not data[0]))
 
     # Each bit becomes the XOR of all bits up to it, in three steps.
-    @always_comb
-    def chain_two():
-        chained_2.next = data ^ concat(data[7:], False)
+    chain_two = assign(chained_2, lambda: data ^ concat(data[7:], False))
 
-    @always_comb
-    def chain_four():
-        chained_4.next = chained_2 ^ concat(chained_2[6:], False, False)
-
-    @always_comb
-    def chain_eight():
-        chained.next = chained_4 ^ concat(chained_4[4:], False, False, False, False)
+    chain_four = assign(chained_4, lambda: chained_2 ^ concat(chained_2[6:], False, False))
+    chain_eight = assign(chained, lambda: chained_4 ^ concat(chained_4[4:], False, False, False, False))
 
     # A chain of XNORs differs from a chain of XORs in every second bit.
     @always_seq(clk.posedge, reset=None)
@@ -74,9 +65,7 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
             word_control.next = control
 
     # Half the excess of ones over zeros in the word.
-    @always_comb
-    def weigh_word():
-        excess.next = word_ones - 4
+    weigh_word = assign(excess, lambda: word_ones - 4)
 
     # The complement is sent if it reduces the disparity; if the disparity or the word is balanced, it cannot.
     @always_comb

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """A multiplier made of adders, to leave the chip's multipliers for other uses."""
 
-from myhdl import always_comb, block, concat, instances
+from myhdl import block, concat, instances
 
 from raycaster.hdl.signals import Signed, signed, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.engine.multiplier_step import multiplier_step
 
 
@@ -31,16 +32,8 @@ def array_multiplier(multiplicand, multiplier, product):
         for i in range(count)
     ]  # fmt: skip
 
-    @always_comb
-    def begin():
-        first_digits.next = multiplier[count:]
-
-    @always_comb
-    def join():
-        whole.next = concat(last_total[width:], last_digits).signed()
-
-    @always_comb
-    def keep():
-        product.next = whole[kept:].signed()
+    begin = assign(first_digits, lambda: multiplier[count:])
+    join = assign(whole, lambda: concat(last_total[width:], last_digits).signed())
+    keep = assign(product, lambda: whole[kept:].signed())
 
     return instances()

@@ -5,6 +5,7 @@ from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.records import Colour
 from raycaster.rtl.common.widths import share_bits
 from raycaster.rtl.engine.colour_share import colour_share
@@ -50,8 +51,6 @@ def colour_combiner(clk, steps, found, found_colour, found_mirror, picture, miss
 
     blended = pixel.joined(red=red, green=green, blue=blue)
 
-    @always_comb
-    def join():
-        pixel.word.next = blended
+    join = assign(pixel.word, lambda: blended)
 
     return instances()

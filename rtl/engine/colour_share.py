@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import unsigned
-from raycaster.hdl.verbs import plus
+from raycaster.hdl.verbs import assign, plus
 from raycaster.rtl.common.widths import share_bits
 
 
@@ -62,9 +62,7 @@ def colour_share(clk, steps, found, found_mirror, share, missed, config: Configu
             share.next = weight - passed_on
             left.next = passed_on
 
-        @always_comb
-        def judge():
-            missed.next = weight == 0
+        judge = assign(missed, lambda: weight == 0)
 
     else:
         # A ray keeps as much as it passes on.
@@ -74,9 +72,7 @@ def colour_share(clk, steps, found, found_mirror, share, missed, config: Configu
             if steps.store_ray:
                 share.next = weight >> 1
 
-        @always_comb
-        def pass_on():
-            left.next = share
+        pass_on = assign(left, lambda: share)
 
         @always(clk.posedge)
         def judge():

@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.hdl.signals import unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import share_bits
 
 
@@ -39,10 +40,7 @@ def colour_sum(clk, steps, channel, share, blended, config: Configuration):
                     weighted.next = channel << i
 
     elif config.most_reflections > 2:
-
-        @always_comb
-        def weigh():
-            weighted.next = channel * share
+        weigh = assign(weighted, lambda: channel * share)
 
     else:
         at_even, at_odd = unsigned(sum_bits), unsigned(sum_bits)
@@ -58,13 +56,9 @@ def colour_sum(clk, steps, channel, share, blended, config: Configuration):
                 if share[i]:
                     at_odd.next = channel << i
 
-        @always_comb
-        def join():
-            weighted.next = (at_even + at_odd) % (1 << sum_bits)
+        join = assign(weighted, lambda: (at_even + at_odd) % (1 << sum_bits))
 
-    @always_comb
-    def accumulate():
-        next_total.next = (total + weighted) % (1 << sum_bits)
+    accumulate = assign(next_total, lambda: (total + weighted) % (1 << sum_bits))
 
     @always(clk.posedge)
     def add():
@@ -73,8 +67,6 @@ def colour_sum(clk, steps, channel, share, blended, config: Configuration):
         elif steps.add_colour:
             total.next = next_total
 
-    @always_comb
-    def take_top():
-        blended.next = total[sum_bits:low]
+    take_top = assign(blended, lambda: total[sum_bits:low])
 
     return instances()

@@ -4,6 +4,7 @@
 from myhdl import Signal, always_comb, block, concat, instances, intbv
 
 from raycaster.hdl.signals import unsigned
+from raycaster.hdl.verbs import assign
 
 
 @block
@@ -23,14 +24,10 @@ def divider_step(remainder, digits, divisor, next_remainder, next_digits):
     dividend = unsigned(width + 1)
     difference = Signal(intbv(0, min=-(1 << width), max=1 << (width + 1)))
 
-    @always_comb
-    def bring_down():
-        dividend.next = concat(remainder, digits[count - 1])
+    bring_down = assign(dividend, lambda: concat(remainder, digits[count - 1]))
 
     # A negative difference means that the divisor does not fit.
-    @always_comb
-    def subtract():
-        difference.next = dividend - divisor
+    subtract = assign(difference, lambda: dividend - divisor)
 
     @always_comb
     def restore():

@@ -5,6 +5,7 @@ from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import REFLECTION_BITS
 from raycaster.rtl.engine.rect_sequencer import rect_sequencer
 
@@ -83,13 +84,8 @@ def ray_sequencer(
         config=config,
     )  # fmt: skip
 
-    @always_comb
-    def see_start():
-        start_ray.next = steps.screen_to_ray or steps.add_colour
-
-    @always_comb
-    def see_end():
-        traced.next = (state == RayState.TRACE) and (not fetched) and (in_flight[write_at:] == 0)
+    see_start = assign(start_ray, lambda: steps.screen_to_ray or steps.add_colour)
+    see_end = assign(traced, lambda: (state == RayState.TRACE) and (not fetched) and (in_flight[write_at:] == 0))
 
     if config.light:
 
@@ -147,16 +143,12 @@ def ray_sequencer(
     if config.fixed:
         after_this = unsigned(config.rectangles) if config.light else wanted_next
 
-        @always_comb
-        def look_ahead():
-            after_this.next = masks[bounce]
+        look_ahead = assign(after_this, lambda: masks[bounce])
 
         if config.light:
             from_light = unsigned(config.rectangles)
 
-            @always_comb
-            def look_from_light():
-                from_light.next = shadow_masks[bounce]
+            look_from_light = assign(from_light, lambda: shadow_masks[bounce])
 
             @always_comb
             def choose_next():

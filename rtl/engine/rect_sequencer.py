@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, downrange, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, bits_for, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import index_bits
 
 
@@ -35,9 +36,7 @@ def rect_sequencer(
     lowest, upcoming = (unsigned(index_bits(config)) for _ in range(2))
     offered, take = bit(), bit()
 
-    @always_comb
-    def see_take():
-        take.next = start_ray or (fetched and (early_out or cycle == last_cycle))
+    see_take = assign(take, lambda: start_ray or (fetched and (early_out or cycle == last_cycle)))
 
     # While no test is under way, the next ray's first rectangle is chosen: that ray wants all of them again.
     @always_comb
@@ -82,8 +81,6 @@ def rect_sequencer(
         else:
             cycle.next = cycle + 1
 
-    @always_comb
-    def start():
-        starting.next = fetched and cycle == 0
+    start = assign(starting, lambda: fetched and cycle == 0)
 
     return instances()

@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unconnected, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.common.records import Surface
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
@@ -61,13 +62,9 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
             aim=steps.aim, from_light=from_light,
         )  # fmt: skip
 
-        @always_comb
-        def operate_shadows():
-            steps.write_shadow.next = in_flight[WRITE_AT] and from_light
+        operate_shadows = assign(steps.write_shadow, lambda: in_flight[WRITE_AT] and from_light)
 
-    @always_comb
-    def operate_stages():
-        steps.write_z_buf.next = in_flight[WRITE_AT] and not from_light
+    operate_stages = assign(steps.write_z_buf, lambda: in_flight[WRITE_AT] and not from_light)
 
     if config.patterns:
         load_at, store_at = WRITE_AT + 1, WRITE_AT + 1 + DIVISION_CYCLES

@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, unconnected, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.interfaces import Slope, Vector
 from raycaster.rtl.common.records import Colour, Mirror, Signs, Surface
 from raycaster.rtl.common.widths import RGB_BITS, exact_slope_bits, eye_bits, light_slope_bits
@@ -126,30 +127,20 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
         dimmer = shade_colour(colour=lit_colour, dark=dark, shade=camera.light_shade, shaded=shown)
 
         # The slope of a unit's own ray fits fewer bits.
-        @always_comb
-        def narrow():
-            denominator.next = tested_denominator[slope_bits:]
+        narrow = assign(denominator, lambda: tested_denominator[slope_bits:])
 
         @always_comb
         def judge_light():
             dark.next = camera.light_on and ((not facing) or shaded)
             fate.in_question.next = camera.light_on and found and facing and (not shaded) and not missed
 
-        @always_comb
-        def look():
-            lit_colour.word.next = colour
+        look = assign(lit_colour.word, lambda: colour)
 
     # Hits after a ray has ended do not count.
     if config.materials:
-
-        @always_comb
-        def judge_alive():
-            fate.alive.next = found and (found_surface.mirror != 0) and not missed
+        judge_alive = assign(fate.alive, lambda: found and (found_surface.mirror != 0) and not missed)
 
     elif config.culling:
-
-        @always_comb
-        def judge_alive():
-            fate.alive.next = found and not missed
+        judge_alive = assign(fate.alive, lambda: found and not missed)
 
     return instances()

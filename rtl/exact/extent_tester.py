@@ -4,7 +4,7 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import minus, times
+from raycaster.hdl.verbs import assign, minus, times
 
 
 @block
@@ -67,9 +67,7 @@ def extent_tester(
             far.next = ~lower
             flipped_eye.next = ~eye
 
-    @always_comb
-    def look_ahead():
-        ahead.next = not to_far[distance_bits]
+    look_ahead = assign(ahead, lambda: not to_far[distance_bits])
 
     # passed_1: the near bound is behind the eye.
     @always(clk.posedge)
@@ -81,9 +79,7 @@ def extent_tester(
             passed_1.next = to_near[distance_bits]
             on_mirror_1.next = on_mirror
 
-    @always_comb
-    def clip():
-        clips.next = on_mirror_1 and (passed_1 or (to_near_1 <= mirror_distance))
+    clip = assign(clips, lambda: on_mirror_1 and (passed_1 or (to_near_1 <= mirror_distance)))
 
     @always_comb
     def choose_first():

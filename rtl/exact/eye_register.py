@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import minus
+from raycaster.hdl.verbs import assign, minus
 from raycaster.rtl.common.by_axis import by_axis
 
 
@@ -47,14 +47,10 @@ def eye_register(
         twice.next = 0
         twice.next[COORDINATE_BITS + 1 : 1] = found_surface.position
 
-    @always_comb
-    def extend():
-        twice_signed.next = twice
+    extend = assign(twice_signed, lambda: twice)
 
     # The image fits after every mirror except the last, after which it is don't care.
-    @always_comb
-    def fit():
-        image.next = difference[eye_bits:].signed()
+    fit = assign(image, lambda: difference[eye_bits:].signed())
 
     # The eye, and the slope components that all mirrors together have reversed.
     @always(clk.posedge)
@@ -104,8 +100,6 @@ def eye_register(
 
     all_signs = signs.joined(dx=dx, dy=dy, dz=dz)
 
-    @always_comb
-    def join_signs():
-        signs.word.next = all_signs
+    join_signs = assign(signs.word, lambda: all_signs)
 
     return instances()

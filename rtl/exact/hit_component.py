@@ -4,7 +4,7 @@
 from myhdl import always_comb, block, concat, instances
 
 from raycaster.hdl.signals import Signed, signed, unsigned
-from raycaster.hdl.verbs import times
+from raycaster.hdl.verbs import assign, times
 
 
 @block
@@ -28,9 +28,7 @@ def hit_component(eye, back, slope, distance, e, component):
     flipped_way = unsigned(way_bits)
     from_eye, along, total = (unsigned(bits + 1) for _ in range(3))
 
-    @always_comb
-    def extend():
-        divisor.next = e
+    extend = assign(divisor, lambda: e)
 
     @always_comb
     def turn_way():
@@ -44,12 +42,7 @@ def hit_component(eye, back, slope, distance, e, component):
         from_eye.next = concat(position[bits:], True)
         along.next = concat(flipped_way[bits:], back)
 
-    @always_comb
-    def add():
-        total.next = (from_eye + along) % (1 << (bits + 1))
-
-    @always_comb
-    def leave_carry():
-        component.next = total[bits + 1 : 1]
+    add = assign(total, lambda: (from_eye + along) % (1 << (bits + 1)))
+    leave_carry = assign(component, lambda: total[bits + 1 : 1])
 
     return instances()

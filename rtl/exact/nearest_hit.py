@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The nearest hit so far, by exact comparison of fractions."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.hdl.signals import bit
-from raycaster.hdl.verbs import times
+from raycaster.hdl.verbs import assign, times
 
 
 @block
@@ -36,9 +36,7 @@ def nearest_hit(
     nearest_product, multiply_nearest = times(found_distance, denominator, product_bits)
     nearer = bit()
 
-    @always_comb
-    def compare():
-        nearer.next = hit and ((not found) or (offered_product < nearest_product))
+    compare = assign(nearer, lambda: hit and ((not found) or (offered_product < nearest_product)))
 
     @always(clk.posedge)
     def keep():

@@ -4,6 +4,7 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.hdl.signals import bit
+from raycaster.hdl.verbs import assign
 
 
 @block
@@ -48,17 +49,13 @@ def ray_switch(
             tested_slope.dz.next = slope.dz
             tested_signs.word.next = signs.word
 
-    @always_comb
-    def judge_mirror():
-        active.next = mirror.active and not from_light
+    judge_mirror = assign(active, lambda: mirror.active and not from_light)
 
     left = tested_mirror.joined(
         active=active, axis=mirror.axis, distance=mirror.distance, met_x=mirror.met_x, met_y=mirror.met_y,
         met_z=mirror.met_z,
     )  # fmt: skip
 
-    @always_comb
-    def choose_mirror():
-        tested_mirror.word.next = left
+    choose_mirror = assign(tested_mirror.word, lambda: left)
 
     return instances()

@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import minus
+from raycaster.hdl.verbs import assign, minus
 from raycaster.rtl.common.by_axis import along_a, along_u, along_v, by_axis
 from raycaster.rtl.exact.extent_tester import extent_tester
 
@@ -96,9 +96,7 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
         mirror_on_y.next = mirror.active and (mirror.axis == 1)
         mirror_on_z.next = mirror.active and (mirror.axis == 2)
 
-    @always_comb
-    def extend():
-        position.next = rect.position
+    extend = assign(position, lambda: rect.position)
 
     @always_comb
     def complement():
@@ -121,17 +119,13 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
         if steps.find_intersection:
             seen_1.word.next = measured
 
-    @always_comb
-    def clip():
-        beyond.next = seen_1.crosses and ((not seen_1.mirror_on_a) or (seen_1.n > mirror.distance))
+    clip = assign(beyond, lambda: seen_1.crosses and ((not seen_1.mirror_on_a) or (seen_1.n > mirror.distance)))
 
     @always(clk.posedge)
     def stage_2():
         seen_2.word.next = clipped
 
-    @always_comb
-    def compare_with_mirror():
-        in_mirror.next = in_mirror_u or in_mirror_v
+    compare_with_mirror = assign(in_mirror, lambda: in_mirror_u or in_mirror_v)
 
     @always(clk.posedge)
     def stage_3():

@@ -4,7 +4,7 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import minus
+from raycaster.hdl.verbs import assign, minus
 from raycaster.rtl.common.by_axis import by_axis
 from raycaster.rtl.common.widths import AXIS_BITS
 from raycaster.rtl.exact.hit_component import hit_component
@@ -72,9 +72,7 @@ def shadow_ray(
         )
     ]  # fmt: skip
 
-    @always_comb
-    def extend():
-        light.next = light_q
+    extend = assign(light, lambda: light_q)
 
     @always(clk.posedge)
     def stage_1():
@@ -95,9 +93,7 @@ def shadow_ray(
         back_2.next = sum_2[light_bits]
         inverse.next = ~sum_2
 
-    @always_comb
-    def negate():
-        negated.next = (inverse + 1) % (1 << sum_bits)
+    negate = assign(negated, lambda: (inverse + 1) % (1 << sum_bits))
 
     @always_comb
     def measure_slope():
@@ -126,8 +122,6 @@ def shadow_ray(
 
     all_signs = shadow_signs.joined(dx=dx, dy=dy, dz=dz)
 
-    @always_comb
-    def join_signs():
-        shadow_signs.word.next = all_signs
+    join_signs = assign(shadow_signs.word, lambda: all_signs)
 
     return instances()

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The shadow of a hit point: flags that the unit looks for the light, and that a rectangle is in between."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.configuration import COORDINATE_BITS
 from raycaster.hdl.signals import bit, unsigned
-from raycaster.hdl.verbs import times
+from raycaster.hdl.verbs import assign, times
 from raycaster.rtl.common.interfaces import AIM_CYCLES
 
 
@@ -36,13 +36,9 @@ def shadow_register(clk, steps, in_question, hit, numerator, denominator, found_
     last = AIM_CYCLES - 1
 
     # The light and the plane are both in the world, so the distance between them fits a coordinate's width.
-    @always_comb
-    def narrow():
-        distance.next = numerator[COORDINATE_BITS:]
+    narrow = assign(distance, lambda: numerator[COORDINATE_BITS:])
 
-    @always_comb
-    def compare():
-        in_between.next = hit and (reached < denominator)
+    compare = assign(in_between, lambda: hit and (reached < denominator))
 
     @always(clk.posedge)
     def look():

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The primary ray of a unit's column, for a camera that turns."""
 
-from myhdl import always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit
-from raycaster.hdl.verbs import minus, times
+from raycaster.hdl.verbs import assign, minus, times
 from raycaster.rtl.common.widths import row_bits
 from raycaster.rtl.exact.slope_component import slope_component
 
@@ -54,8 +54,6 @@ def turned_generator(
 
     all_signs = initial_signs.joined(dx=negative_x, dy=negative_y, dz=negative_z)
 
-    @always_comb
-    def join_signs():
-        initial_signs.word.next = all_signs
+    join_signs = assign(initial_signs.word, lambda: all_signs)
 
     return instances()

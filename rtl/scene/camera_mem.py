@@ -5,6 +5,7 @@ from myhdl import Signal, always_comb, block, instances, intbv
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied
+from raycaster.hdl.verbs import assign
 from raycaster.registers import register_map
 from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.scene.scene_word import scene_word
@@ -44,17 +45,13 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
     select_position, position_word = selects[0], shadows[0]
     camera_address = tied(registers[0].address, len(bus.address))
 
-    @always_comb
-    def decode():
-        select_position.next = bus.address == camera_address
+    decode = assign(select_position, lambda: bus.address == camera_address)
 
     if config.light:
         select_light, light_word = selects[-1], shadows[-1]
         light_address = tied(registers[-1].address, len(bus.address))
 
-        @always_comb
-        def decode_light():
-            select_light.next = bus.address == light_address
+        decode_light = assign(select_light, lambda: bus.address == light_address)
 
     else:
         select_light, light_word = tied(0, 1), tied(0, WORD_BITS)
@@ -92,8 +89,6 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
             if select_light:
                 readback.next = light_word
 
-    @always_comb
-    def join():
-        camera.word.next = whole
+    join = assign(camera.word, lambda: whole)
 
     return instances()

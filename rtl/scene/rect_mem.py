@@ -5,6 +5,7 @@ from myhdl import Signal, always, always_comb, always_seq, block, concat, instan
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, side_by_side, signed, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import WORD_BITS, index_bits
 from raycaster.rtl.scene.rect_slot import rect_slot
@@ -76,9 +77,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     sorter = rect_sorter(latest, sorted_rect, config)
 
     # The table starts after the other registers.
-    @always_comb
-    def locate():
-        slot.next = bus.address[address_width:2] - table_slot
+    locate = assign(slot, lambda: bus.address[address_width:2] - table_slot)
 
     # Outside the table index is 0, so that it stays within the memories.
     @always_comb
@@ -88,18 +87,14 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
         if (slot >= 0) and (slot < count):
             index.next = slot[index_width:]
 
-    @always_comb
-    def decode():
-        write.next = bus.write and in_table
+    decode = assign(write, lambda: bus.write and in_table)
 
     @always_comb
     def find_next():
         next_slot.next = bus.next_address[address_width:2] - table_slot
         next_index.next = next_slot[index_width:]
 
-    @always_comb
-    def see_repetition():
-        repeats.next = write and next_index == index
+    see_repetition = assign(repeats, lambda: write and next_index == index)
 
     # A word that is being written is not read, in either memory, as block RAM would need logic for that: the words of
     # such a slot are in the register behind the merger. Outside the table, words are don't care.
@@ -160,9 +155,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
         mask.word.next = whole_mask
         data.word.next = whole_data
 
-    @always_comb
-    def merge():
-        merged.word.next = ((old.word & ~mask.word) | (data.word & mask.word)) & implemented
+    merge = assign(merged.word, lambda: ((old.word & ~mask.word) | (data.word & mask.word)) & implemented)
 
     @always(clk.posedge)
     def store_shadow():
@@ -190,9 +183,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     def find_plane():
         flat.next = (latest.x_0 == latest.x_1) or (latest.y_0 == latest.y_1) or (latest.z_0 == latest.z_1)
 
-    @always_comb
-    def find_copies():
-        latest_copies.word.next = copies_words[latest_index]
+    find_copies = assign(latest_copies.word, lambda: copies_words[latest_index])
 
     # StartScreen makes the pending bank live, so these two are enough. No commit comes while a rectangle is stored.
     @always_comb
@@ -223,14 +214,10 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
         bad_rectangle.next = bad != 0
         rects.usable.next = usable
 
-    @always_comb
-    def find_live():
-        read_copies.word.next = copies_words[rects.index]
+    find_live = assign(read_copies.word, lambda: copies_words[rects.index])
 
     # No usable rectangle is in a bank that is being written.
-    @always_comb
-    def see_reading():
-        reads.next = rects.fetch and not (storing and write_address == read_address)
+    see_reading = assign(reads, lambda: rects.fetch and not (storing and write_address == read_address))
 
     @always(clk.posedge)
     def present():

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The rectangles of a fixed scene, instead of rect_mem."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.fixed import varying_bits
 from raycaster.hdl.signals import tied, unsigned
+from raycaster.hdl.verbs import assign
 
 
 @block
@@ -29,8 +30,6 @@ def rect_rom(clk, rects, config: Configuration):
         if rects.fetch:
             looked_up.next = table[int(rects.index)]
 
-    @always_comb
-    def present():
-        rects.rect.word.next = (looked_up & varying) | same
+    present = assign(rects.rect.word, lambda: (looked_up & varying) | same)
 
     return instances()

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The banks of a rectangle's shadow, pending and live copy, and which of them are usable."""
 
-from myhdl import always_comb, always_seq, block, instances
+from myhdl import always_seq, block, instances
 
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.scene.written_rect import BANK_BITS
 
 
@@ -50,8 +51,6 @@ def rect_slot(clk, reset, bus, storing, index, number, bank, enable, flat, copie
 
     whole = copies.joined(shadow=shadow, pending=pending, live=live)
 
-    @always_comb
-    def join():
-        copies.word.next = whole
+    join = assign(copies.word, lambda: whole)
 
     return instances()

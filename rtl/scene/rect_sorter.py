@@ -5,6 +5,7 @@ from myhdl import always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.signals import unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import AXIS_BITS, KIND_BITS, MIRROR_BITS
 from raycaster.scene import CELLS
 
@@ -88,8 +89,6 @@ def rect_sorter(written, rect, config: Configuration):
         colour_2=written.colour_2, u_low=u_low, u_high=u_high, v_low=v_low, v_high=v_high,
     )  # fmt: skip
 
-    @always_comb
-    def join():
-        rect.word.next = whole
+    join = assign(rect.word, lambda: whole)
 
     return instances()

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """A word of the scene: the shadow that software writes, a pending copy, and the live one."""
 
-from myhdl import Signal, always_comb, always_seq, block, instances, intbv
+from myhdl import Signal, always_seq, block, instances, intbv
 
 from raycaster.hdl.signals import unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import WORD_BITS
 
 
@@ -26,9 +27,7 @@ def scene_word(clk, reset, bus, selected, implemented, shadow, live, first: int 
     """
     merged, pending = unsigned(WORD_BITS), Signal(intbv(first)[WORD_BITS:])
 
-    @always_comb
-    def merge():
-        merged.next = ((shadow & ~bus.mask) | (bus.data & bus.mask)) & implemented
+    merge = assign(merged, lambda: ((shadow & ~bus.mask) | (bus.data & bus.mask)) & implemented)
 
     # Two conditions, so that a simulator tests bus.write once for all words.
     @always_seq(clk.posedge, reset=reset)

@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import SLOPE_BITS, position_bits, product_bits
 from raycaster.rtl.engine.divider_step import divider_step
 
@@ -86,9 +87,7 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
             round_up.next = twice_remainder >= divisor_held
 
     # Rounding follows the register, and may carry into one more bit.
-    @always_comb
-    def round_quotient():
-        rounded.next = truncated + round_up
+    round_quotient = assign(rounded, lambda: truncated + round_up)
 
     @always_comb
     def deliver():

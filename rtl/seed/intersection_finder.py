@@ -5,6 +5,7 @@ from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, unconnected, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.by_axis import along_a, along_u, along_v, by_axis
 from raycaster.rtl.common.widths import SLOPE_BITS, position_bits
 from raycaster.rtl.seed.cell_parity import cell_parity
@@ -94,9 +95,7 @@ def intersection_finder(
         inside_u.next = (u_value >= u_low) and (u_value <= u_high)
         inside_v.next = (v_value >= v_low) and (v_value <= v_high)
 
-    @always_comb
-    def judge():
-        hit.next = u_valid and v_valid and inside_u and inside_v
+    judge = assign(hit, lambda: u_valid and v_valid and inside_u and inside_v)
 
     # Depth is measured along x: for a plane across x it is the distance, and otherwise the quotient of u, which is x.
     at_u, at_v = u_value(position_width, 0), v_value(position_width, 0)

@@ -6,7 +6,7 @@ from myhdl import always, always_comb, block, instances
 from raycaster.configuration import Configuration
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, unsigned
-from raycaster.hdl.verbs import minus, plus
+from raycaster.hdl.verbs import assign, minus, plus
 from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.widths import SLOPE_BITS, position_bits, product_bits
 from raycaster.rtl.seed.divider import divider
@@ -69,9 +69,7 @@ def intersection_helper(
         divisor=started_e, quotient=quotient, overflow=overflow, config=config,
     )  # fmt: skip
 
-    @always_comb
-    def look_towards():
-        runs_towards.next = (e != 0) and (difference != 0) and ((difference < 0) == e_negative)
+    look_towards = assign(runs_towards, lambda: (e != 0) and (difference != 0) and ((difference < 0) == e_negative))
 
     operands = started.joined(distance=away, negative=b_negative, towards=runs_towards)
 

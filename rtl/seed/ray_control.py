@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.common.records import Rect
 from raycaster.rtl.engine.ray_sequencer import ends_early, ray_sequencer
@@ -69,8 +70,6 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
         def register_towards():
             none_towards.next = not fate.any_towards
 
-        @always_comb
-        def end_early():
-            early_out.next = in_flight[load_at] and none_towards
+        end_early = assign(early_out, lambda: in_flight[load_at] and none_towards)
 
     return instances()

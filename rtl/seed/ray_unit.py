@@ -5,6 +5,7 @@ from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unconnected, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.interfaces import Slope
 from raycaster.rtl.common.records import Origin, Ray, Signs
 from raycaster.rtl.common.widths import AXIS_BITS, MIRROR_BITS, RGB_BITS, position_bits
@@ -90,21 +91,12 @@ def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pix
 
     # Hits after a ray has ended do not count.
     if config.materials:
-
-        @always_comb
-        def judge_alive():
-            fate.alive.next = found and (found_mirror != 0) and not missed
+        judge_alive = assign(fate.alive, lambda: found and (found_mirror != 0) and not missed)
 
     elif config.culling:
-
-        @always_comb
-        def judge_alive():
-            fate.alive.next = found and not missed
+        judge_alive = assign(fate.alive, lambda: found and not missed)
 
     if ends_early(config):
-
-        @always_comb
-        def judge_towards():
-            fate.towards.next = towards and not missed
+        judge_towards = assign(fate.towards, lambda: towards and not missed)
 
     return instances()

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The nearest hit so far."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import position_bits
 
 
@@ -35,9 +36,7 @@ def z_buffer(
     nearest = unsigned(position_bits(config))
     nearer = bit()
 
-    @always_comb
-    def compare():
-        nearer.next = hit and ((not found) or (depth < nearest))
+    compare = assign(nearer, lambda: hit and ((not found) or (depth < nearest)))
 
     @always(clk.posedge)
     def keep():

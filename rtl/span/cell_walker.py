@@ -5,6 +5,7 @@ from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.signals import bit, signed, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.by_axis import along_u, along_v, by_axis
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
@@ -104,13 +105,9 @@ def cell_walker(
         to_plane.next = grid.distance
 
     # An extra bit, as the present cell and the grid may belong to two surfaces while nothing is asked.
-    @always_comb
-    def measure():
-        difference.next = whole_limit - eye_w
+    measure = assign(difference, lambda: whole_limit - eye_w)
 
-    @always_comb
-    def keep_offset():
-        offset.next = difference[factor_bits:].signed()
+    keep_offset = assign(offset, lambda: difference[factor_bits:].signed())
 
     # While the cell is being found, the second line is e itself.
     @always_comb
@@ -181,9 +178,7 @@ def cell_walker(
         asks.divide.next = crosses
         asks.division.word.next = crossed
 
-    @always_comb
-    def see_quotient():
-        quotient.next = (answer.columns - 1) % (1 << width)
+    see_quotient = assign(quotient, lambda: (answer.columns - 1) % (1 << width))
 
     @always_comb
     def see_place():

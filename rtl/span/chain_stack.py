@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bits_for, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import level_bits
 
 
@@ -35,9 +36,7 @@ def chain_stack(clk, push, level, kept, frame, config: Configuration):
         above, below = unsigned(width), unsigned(width)
         lower = unsigned(level_bits(config))
 
-        @always_comb
-        def descend():
-            lower.next = (level - 1) % (1 << len(lower))
+        descend = assign(lower, lambda: (level - 1) % (1 << len(lower)))
 
         @always_comb
         def address():
@@ -49,8 +48,6 @@ def chain_stack(clk, push, level, kept, frame, config: Configuration):
             if push:
                 memory[above].next = kept.word
 
-        @always_comb
-        def show():
-            frame.word.next = memory[below]
+        show = assign(frame.word, lambda: memory[below])
 
     return instances()

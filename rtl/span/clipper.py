@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, bits_for, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import column_bits
 from raycaster.rtl.span.first_change import division_cycles
 from raycaster.rtl.span.line_eval import LATENCY
@@ -96,9 +97,7 @@ def clipper(clk, reset, chain, opened, met, asks, answer, append, entry, idle, c
             low.next = chain.start
             high.next = chain.stop
 
-    @always_comb
-    def find_border():
-        border.next = (chain.start + answer.columns) % (1 << width)
+    find_border = assign(border, lambda: (chain.start + answer.columns) % (1 << width))
 
     @always(clk.posedge)
     def clip():
@@ -128,9 +127,7 @@ def clipper(clk, reset, chain, opened, met, asks, answer, append, entry, idle, c
             if ended:
                 taken.next = (taken + 1) % count
 
-    @always_comb
-    def see_idle():
-        idle.next = put == taken
+    see_idle = assign(idle, lambda: put == taken)
 
     # Nothing ends in the cycles after an opening and after an end, as a rectangle has several lines.
     @always(clk.posedge)

@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.by_axis import by_axis
 from raycaster.rtl.common.widths import column_bits, line_factor_bits
 from raycaster.rtl.span.records import NUMBER_BITS
@@ -45,9 +46,7 @@ def corner_finder(
 
     of_winner = by_axis(winner.axis, chain.met_x, chain.met_y, chain.met_z, met, width=1)
 
-    @always_comb
-    def judge():
-        needed.next = chain.mirrored and not met
+    judge = assign(needed, lambda: chain.mirrored and not met)
 
     @always_comb
     def measure():

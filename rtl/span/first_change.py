@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bits_for, unconnected, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.widths import divisor_bits, line_bits
 from raycaster.rtl.span.division_stage import division_stage
@@ -78,9 +79,7 @@ def first_change(clk, reset, start, division, columns, done, config: Configurati
         if not reset:
             under_way.next = concat(under_way[cycles - 1 :], start)
 
-    @always_comb
-    def see_end():
-        done.next = under_way[cycles - 1]
+    see_end = assign(done, lambda: under_way[cycles - 1])
 
     @always(clk.posedge)
     def show():

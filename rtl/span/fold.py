@@ -5,7 +5,7 @@ from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit, signed
-from raycaster.hdl.verbs import plus
+from raycaster.hdl.verbs import assign, plus
 from raycaster.rtl.common.by_axis import by_axis
 from raycaster.rtl.common.widths import eye_bits
 
@@ -52,13 +52,8 @@ def fold(chain, winner, column, stop, corner, weight, folded, config: Configurat
         if towards:
             way.next = -distance
 
-    @always_comb
-    def double():
-        twice.next = way << 1
-
-    @always_comb
-    def keep():
-        mirrored.next = whole[far_bits:].signed()
+    double = assign(twice, lambda: way << 1)
+    keep = assign(mirrored, lambda: whole[far_bits:].signed())
 
     @always_comb
     def place():
@@ -90,8 +85,6 @@ def fold(chain, winner, column, stop, corner, weight, folded, config: Configurat
         met_z=met_z, weight=weight,
     )  # fmt: skip
 
-    @always_comb
-    def join():
-        folded.word.next = reflected
+    join = assign(folded.word, lambda: reflected)
 
     return instances()

@@ -4,6 +4,7 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.hdl.signals import bit, bits_for, side_by_side, tied, unconnected, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.span.frame_switch import frame_switch
 from raycaster.rtl.span.list_player import list_player
 from raycaster.rtl.span.lists import ListEntry, entry_bits
@@ -75,9 +76,7 @@ def frame_list(
         shown=shown, pixels=pixels, entries=entries, bank=LARGE_BANK if entries == LARGE_BANK else BANK_PLACES,
     )  # fmt: skip
 
-    @always_comb
-    def drop():
-        dropped.next = reset or abandoned
+    drop = assign(dropped, lambda: reset or abandoned)
 
     @always(clk.posedge)
     def stop_units():
@@ -108,9 +107,7 @@ def frame_list(
         ]  # fmt: skip
 
         # The units go on for a cycle, so their queues are emptied when they are reset.
-        @always_comb
-        def empty():
-            emptied.next = reset or stop
+        empty = assign(emptied, lambda: reset or stop)
 
         @always_comb
         def collect():

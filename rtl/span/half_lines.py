@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.signals import Signed, bit, signed, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.by_axis import along_a, along_u, along_v, by_axis
 from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.records import Rect
@@ -119,9 +120,7 @@ def half_lines(
                 aft_right.next[axis] = answer.right < 0
 
     # In a column with a slope of 0, each component is 0 or changes its sign within the chain.
-    @always_comb
-    def see_vanishing():
-        may_vanish.next = ((fore_left & fore_right) | (aft_left & aft_right)) == 0
+    see_vanishing = assign(may_vanish, lambda: ((fore_left & fore_right) | (aft_left & aft_right)) == 0)
 
     @always_comb
     def choose_candidates():
@@ -148,17 +147,10 @@ def half_lines(
         )
 
         # Subtracting 1 changes the bits up to the lowest one that is set.
-        @always_comb
-        def count_down():
-            below.next = (candidates - 1) % (1 << count)
+        count_down = assign(below, lambda: (candidates - 1) % (1 << count))
 
-        @always_comb
-        def drop_first():
-            others.next = candidates & below
-
-        @always_comb
-        def find_first():
-            first.next = candidates & ~below
+        drop_first = assign(others, lambda: candidates & below)
+        find_first = assign(first, lambda: candidates & ~below)
 
         # Each bit of the number is set if the rectangle is among those whose numbers have it.
         @always_comb
@@ -218,19 +210,12 @@ def half_lines(
         )
     ]  # fmt: skip
 
-    @always_comb
-    def extend():
-        position.next = rects.rect.position
-
-    @always_comb
-    def measure():
-        n.next = position - eye_a
+    extend = assign(position, lambda: rects.rect.position)
+    measure = assign(n, lambda: position - eye_a)
 
     size = magnitude(n, distance)
 
-    @always_comb
-    def turn():
-        back.next = flipped != (n < 0)
+    turn = assign(back, lambda: flipped != (n < 0))
 
     @always_comb
     def see_point():
@@ -301,9 +286,7 @@ def half_lines(
             rect_1.word.next = weighed_rect.word
             entry_1.word.next = entry.word
 
-    @always_comb
-    def see_end():
-        walked.next = walking and not (offered or at_hand or weighed or issuing)
+    see_end = assign(walked, lambda: walking and not (offered or at_hand or weighed or issuing))
 
     # The lines of the rectangle that is held.
     @always_comb
@@ -351,9 +334,7 @@ def half_lines(
         whole_bound.next = bound
         whole_distance.next = entry_1.distance
 
-    @always_comb
-    def measure_bound():
-        offset.next = whole_bound - eye_w
+    measure_bound = assign(offset, lambda: whole_bound - eye_w)
 
     if mirrors:
         side = mirror_side(
@@ -425,9 +406,7 @@ def half_lines(
 
     right = unsigned(columns)
 
-    @always_comb
-    def see_last_column():
-        right.next = (chain.stop - 1) % (1 << columns)
+    see_last_column = assign(right, lambda: (chain.stop - 1) % (1 << columns))
 
     asked = asks.query.joined(
         from_light=lit, left=chain.start, right=right, strict=strict, axis_1=axis_1, back_1=back_1, factor_1=factor_1,

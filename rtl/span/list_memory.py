@@ -4,6 +4,7 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.span.run_memory import BANK_PLACES, run_memory
 
 
@@ -56,8 +57,6 @@ def list_memory(
             upper_write_place.next = write_place
             upper_read_place.next = write_place
 
-    @always_comb
-    def show():
-        shown.word.next = lower_run.word | upper_run.word
+    show = assign(shown.word, lambda: lower_run.word | upper_run.word)
 
     return instances()

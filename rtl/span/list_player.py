@@ -4,6 +4,7 @@
 from myhdl import always_comb, block, concat, instances
 
 from raycaster.hdl.signals import bit, bits_for, tied, unconnected, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.span.list_memory import list_memory
 from raycaster.rtl.span.pair_player import pair_player
 from raycaster.rtl.span.pixel_player import pixel_player
@@ -117,9 +118,7 @@ def list_player(
             elif place[0]:
                 first_even.next = (place[bits:1] + 1) % (1 << place_bits)
 
-        @always_comb
-        def join():
-            shown.next = concat(right, left)
+        join = assign(shown, lambda: concat(right, left))
 
         @always_comb
         def count():

@@ -5,6 +5,7 @@ from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.hdl.signals import bit, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.records import Colour
 from raycaster.rtl.common.widths import weight_bits
 
@@ -50,9 +51,7 @@ def painter(
     red, green, blue = (unsigned(sum_bits) for _ in range(3))
     red_shown, green_shown, blue_shown = (unsigned(CHANNEL_BITS) for _ in range(3))
 
-    @always_comb
-    def see_colour():
-        colour.word.next = seen_colour
+    see_colour = assign(colour.word, lambda: seen_colour)
 
     @always_comb
     def weigh():
@@ -81,14 +80,9 @@ def painter(
                 place.next = next_column
 
     else:
+        show_place = assign(place, lambda: stop)
 
-        @always_comb
-        def show_place():
-            place.next = stop
-
-    @always_comb
-    def see_emitted():
-        emitted.next = offers and whole
+    see_emitted = assign(emitted, lambda: offers and whole)
 
     @always(clk.posedge)
     def advance():
@@ -132,9 +126,7 @@ def painter(
 
     shown = mixed.joined(red=red_shown, green=green_shown, blue=blue_shown)
 
-    @always_comb
-    def mix():
-        mixed.word.next = shown
+    mix = assign(mixed.word, lambda: shown)
 
     @always(clk.posedge)
     def offer():

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """From the runs of a row to its pixels, one per clock."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.hdl.signals import unsigned
+from raycaster.hdl.verbs import assign
 
 
 @block
@@ -27,9 +28,7 @@ def pixel_player(clk, playing, visible_line, next_column, head, take, pixel):
         elif next_column:
             column_end.next = (column_end + 1) % (1 << len(column_end))
 
-    @always_comb
-    def finish():
-        take.next = playing and next_column and (head.end == column_end)
+    finish = assign(take, lambda: playing and next_column and (head.end == column_end))
 
     @always(clk.posedge)
     def show():

@@ -4,6 +4,7 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.hdl.signals import unsigned
+from raycaster.hdl.verbs import assign
 
 
 @block
@@ -31,16 +32,8 @@ def quarters_of(weight, quarters, share):
         if quarters[2]:
             four_times.next = weight << 2
 
-    @always_comb
-    def add_low():
-        sum_2.next = (once + twice) % (1 << (width + 3))
-
-    @always_comb
-    def add_high():
-        product.next = (sum_2 + four_times) % (1 << (width + 3))
-
-    @always_comb
-    def divide():
-        share.next = product[width + 2 : 2]
+    add_low = assign(sum_2, lambda: (once + twice) % (1 << (width + 3)))
+    add_high = assign(product, lambda: (sum_2 + four_times) % (1 << (width + 3)))
+    divide = assign(share, lambda: product[width + 2 : 2])
 
     return instances()

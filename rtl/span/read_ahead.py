@@ -4,6 +4,7 @@
 from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.hdl.signals import bit, bits_for, unsigned
+from raycaster.hdl.verbs import assign
 
 
 def slots_for(latency: int) -> int:
@@ -43,9 +44,7 @@ def read_ahead(
     on_the_way = unsigned(latency)
     arrives = bit()
 
-    @always_comb
-    def ask():
-        fetch.next = more and (taken_slots != slot_count) and not restart
+    ask = assign(fetch, lambda: more and (taken_slots != slot_count) and not restart)
 
     @always(clk.posedge)
     def advance():
@@ -65,9 +64,7 @@ def read_ahead(
         else:
             on_the_way.next = concat(on_the_way[latency - 1 :], fetch)
 
-    @always_comb
-    def arrive():
-        arrives.next = on_the_way[latency - 1]
+    arrive = assign(arrives, lambda: on_the_way[latency - 1])
 
     # taken_slots counts runs from their fetch to their take, filled_slots from their arrival.
     @always(clk.posedge)

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The way of the live rectangles to the units' own tables."""
 
-from myhdl import always, always_comb, always_seq, block, instances
+from myhdl import always, always_seq, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit
+from raycaster.hdl.verbs import assign
 
 
 @block
@@ -22,9 +23,7 @@ def rect_copier(clk, reset, start, rects, store, number, copying, config: Config
     last = config.rectangles - 1
     fetching = bit()
 
-    @always_comb
-    def fetch():
-        rects.fetch.next = fetching
+    fetch = assign(rects.fetch, lambda: fetching)
 
     @always_seq(clk.posedge, reset=reset)
     def walk():
@@ -42,8 +41,6 @@ def rect_copier(clk, reset, start, rects, store, number, copying, config: Config
         store.next = fetching
         number.next = rects.index
 
-    @always_comb
-    def show():
-        copying.next = fetching or store
+    show = assign(copying, lambda: fetching or store)
 
     return instances()

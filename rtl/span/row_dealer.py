@@ -4,6 +4,7 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.hdl.signals import bit, bits_for, unsigned
+from raycaster.hdl.verbs import assign
 
 
 @block
@@ -37,13 +38,8 @@ def row_dealer(clk, reset, new_frame, room, done, first_row, next_row, start, ro
         first_row.next = new_frame and not reset
         settles.next = first_row and not reset
 
-    @always_comb
-    def find_idle():
-        idle.next = room & (~busy | done)
-
-    @always_comb
-    def deal():
-        deals.next = (left != 0) and idle[turn]
+    find_idle = assign(idle, lambda: room & (~busy | done))
+    deal = assign(deals, lambda: (left != 0) and idle[turn])
 
     @always_comb
     def choose():

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The place in the list of the line that the monitor shows."""
 
-from myhdl import always_comb, always_seq, block, instances
+from myhdl import always_seq, block, instances
 
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 
 
 @block
@@ -34,9 +35,7 @@ def row_place(clk, reset, scan, view_run, taken, restart, place, playing):
         screen_starts.next = scan.start_screen
         row_starts.next = scan.start_row
 
-    @always_comb
-    def find_end():
-        line_ends.next = was_visible and not scan.visible_line
+    find_end = assign(line_ends, lambda: was_visible and not scan.visible_line)
 
     # The end of a line comes before row_starts, if not in an earlier line.
     @always_seq(clk.posedge, reset=reset)

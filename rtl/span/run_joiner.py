@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import RGB_BITS, column_bits
 
 
@@ -33,17 +34,10 @@ def run_joiner(clk, reset, part, run, done, config: Configuration):
         vacant.next = run.ready or not run.valid
 
     # A held run leaves once it cannot become longer.
-    @always_comb
-    def see_leaving():
-        leaves.next = held and vacant and (last or (part.valid and not (same or empty)))
+    see_leaving = assign(leaves, lambda: held and vacant and (last or (part.valid and not (same or empty))))
 
-    @always_comb
-    def accept():
-        part.ready.next = (not last) and ((not held) or same or empty or vacant)
-
-    @always_comb
-    def see_taken():
-        taken.next = part.valid and part.ready and not empty
+    accept = assign(part.ready, lambda: (not last) and ((not held) or same or empty or vacant))
+    see_taken = assign(taken, lambda: part.valid and part.ready and not empty)
 
     @always(clk.posedge)
     def hold():

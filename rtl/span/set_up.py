@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The entries of a chain: the rectangles that its rays meet, each with its columns."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.span.clipper import clipper
 from raycaster.rtl.span.half_lines import half_lines
 from raycaster.rtl.span.records import Entry
@@ -48,8 +49,6 @@ def set_up(
         elif append:
             count.next = count + 1
 
-    @always_comb
-    def end():
-        done.next = walked and idle
+    end = assign(done, lambda: walked and idle)
 
     return instances()

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """A component of the slope of the first column of row after row, for a camera that turns."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit, signed
-from raycaster.hdl.verbs import minus, times
+from raycaster.hdl.verbs import assign, minus, times
 
 
 @block
@@ -39,9 +39,7 @@ def slope_start(clk, first_row, next_row, forward, right, up, component, config:
         aside_1.next = aside
         above_1.next = above
 
-    @always_comb
-    def add():
-        whole.next = ahead_1 - aside_1 + above_1
+    add = assign(whole, lambda: ahead_1 - aside_1 + above_1)
 
     @always(clk.posedge)
     def step():

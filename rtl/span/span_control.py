@@ -5,6 +5,7 @@ from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import AXIS_BITS, MIRROR_BITS, column_bits, eye_bits, weight_bits
 from raycaster.rtl.span.quarters_of import quarters_of
 from raycaster.rtl.span.records import Chain
@@ -96,16 +97,10 @@ def span_control(
 
     # With one reflection, only the first chain has another one behind it.
     if config.most_reflections == 1:
-
-        @always_comb
-        def see_frame_chain():
-            frame_chain.word.next = first
+        see_frame_chain = assign(frame_chain.word, lambda: first)
 
     elif mirrors:
-
-        @always_comb
-        def see_frame_chain():
-            frame_chain.word.next = frame.chain
+        see_frame_chain = assign(frame_chain.word, lambda: frame.chain)
 
     @always_comb
     def operate():
@@ -124,10 +119,7 @@ def span_control(
             colour.next = picture.background
 
     if mirrors and config.materials:
-
-        @always_comb
-        def see_mirror():
-            mirrored.next = rect.mirror
+        see_mirror = assign(mirrored, lambda: rect.mirror)
 
     if mirrors:
         reflections = unsigned(len(picture.reflections))
@@ -145,13 +137,8 @@ def span_control(
             if state == SpanState.IDLE:
                 reflections.next = picture.reflections
 
-        @always_comb
-        def judge():
-            leaf.next = gap or (level == reflections) or (mirrored == 0)
-
-        @always_comb
-        def see_weight():
-            weight.next = chain.weight
+        judge = assign(leaf, lambda: gap or (level == reflections) or (mirrored == 0))
+        see_weight = assign(weight, lambda: chain.weight)
 
         @always_comb
         def see_own():
@@ -170,9 +157,7 @@ def span_control(
                 passed_on.next = passed
                 ending.next = leaf
 
-    @always_comb
-    def see_empty():
-        empty.next = swept_stop == column
+    see_empty = assign(empty, lambda: swept_stop == column)
 
     @always(clk.posedge)
     def step():

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The renderer of the span engine, which draws whole frames and shows the last one."""
 
-from myhdl import ConcatSignal, always, always_comb, block, instances
+from myhdl import ConcatSignal, always, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, side_by_side, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.interfaces import Picture, Rects, Run, Scan, Vector
 from raycaster.rtl.common.records import Camera, Pixel
 from raycaster.rtl.common.widths import index_bits, pixel_bits, span_slope_bits
@@ -92,10 +93,7 @@ def span_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
     )  # fmt: skip
 
     if config.pixels == 1:
-
-        @always_comb
-        def show():
-            shown.word.next = pixels
+        show = assign(shown.word, lambda: pixels)
 
     else:
         left, right = (Pixel(config.colour_bits).cut(pixels, number) for number in range(2))
@@ -104,12 +102,8 @@ def span_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
             blue=ConcatSignal(right.blue, left.blue),
         )  # fmt: skip
 
-        @always_comb
-        def show():
-            shown.word.next = pair
+        show = assign(shown.word, lambda: pair)
 
-    @always_comb
-    def join_resets():
-        reset_units.next = reset or stop
+    join_resets = assign(reset_units, lambda: reset or stop)
 
     return instances()

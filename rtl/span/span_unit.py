@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unconnected, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.interfaces import Rects, Run, Vector
 from raycaster.rtl.common.widths import (
     RGB_BITS,
@@ -101,9 +102,7 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
             count=count,
         )
 
-        @always_comb
-        def keep_frame():
-            kept.word.next = now
+        keep_frame = assign(kept.word, lambda: now)
 
     else:
         folded, frame = Chain(config).tie({}), Frame(config).tie({})

@@ -5,6 +5,7 @@ from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.signals import bit, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.by_axis import along_a, by_axis
 from raycaster.rtl.common.widths import column_bits, level_bits
 from raycaster.rtl.span.records import Shadows, count_bits
@@ -108,9 +109,7 @@ def surface_light(
             looked.next = level
             here.next = column
 
-    @always_comb
-    def look_up():
-        shadows.word.next = memory[looked]
+    look_up = assign(shadows.word, lambda: memory[looked])
 
     @always_comb
     def see_need():

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The surfaces that rays see on their way, as they were painted."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import level_bits
 
 
@@ -26,8 +27,6 @@ def surface_table(clk, paint, level, given, seen, shown, config: Configuration):
         if paint:
             memory[level].next = given.word
 
-    @always_comb
-    def show():
-        shown.word.next = memory[seen]
+    show = assign(shown.word, lambda: memory[seen])
 
     return instances()

@@ -5,6 +5,7 @@ from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.records import Colour
 from raycaster.rtl.common.widths import KIND_BITS, RGB_BITS, column_bits
 from raycaster.rtl.engine.pattern_colour import pattern_colour
@@ -76,15 +77,11 @@ def surfaces(
 
     table = surface_table(clk=clk, paint=paint, level=level, given=new, seen=seen, shown=surface, config=config)
 
-    @always_comb
-    def see_need():
-        unseen.next = gap or (share == 0)
+    see_need = assign(unseen, lambda: gap or (share == 0))
 
     given = new.joined(share=share, colour=colour, kind=kind, colour_2=rect.colour_2)
 
-    @always_comb
-    def join():
-        new.word.next = given
+    join = assign(new.word, lambda: given)
 
     if patterns:
         odd_u, odd_v = bit(), bit()
@@ -113,9 +110,7 @@ def surfaces(
             painted=painted, dark=dark, next_column=next_light, stepped=stepped, config=config,
         )  # fmt: skip
 
-        @always_comb
-        def see_bright():
-            bright.word.next = pattern
+        see_bright = assign(bright.word, lambda: pattern)
 
         dimmer = shade_colour(colour=bright, dark=dark, shade=camera.light_shade, shaded=seen_colour)
 
@@ -136,20 +131,12 @@ def surfaces(
                 next_column.next = next_light
 
     elif patterns:
-
-        @always_comb
-        def see_next():
-            next_column.next = next_cells
+        see_next = assign(next_column, lambda: next_cells)
 
     else:
+        see_next = assign(next_column, lambda: next_light)
 
-        @always_comb
-        def see_next():
-            next_column.next = next_light
-
-    @always_comb
-    def show():
-        seen_share.next = surface.share
+    show = assign(seen_share, lambda: surface.share)
 
     @always_comb
     def request():

@@ -5,6 +5,7 @@ from myhdl import Signal, always, always_comb, block, concat, enum, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import column_bits, line_factor_bits
 from raycaster.rtl.span.records import NUMBER_BITS, Entry
 
@@ -172,18 +173,14 @@ def sweep(
         if here:
             found_at.next = at
 
-    @always_comb
-    def see_change():
-        changes.next = (answer.left < 0) and (answer.right >= 0)
+    see_change = assign(changes, lambda: (answer.left < 0) and (answer.right >= 0))
 
     @always_comb
     def start_division():
         crosses.next = (state == SweepState.ORDER) and answer.valid and changes
         asks.divide.next = (state == SweepState.ORDER) and answer.valid and changes
 
-    @always_comb
-    def see_earlier():
-        earlier.next = here and sooner
+    see_earlier = assign(earlier, lambda: here and sooner)
 
     # Two that follow at the same column are compared there.
     @always_comb
@@ -215,9 +212,7 @@ def sweep(
         advance.next = settled and not (rivalled or crosses)
         done.next = (state == SweepState.SCAN) and (rest == 0) and not (held or begins)
 
-    @always_comb
-    def fetch():
-        read.next = start or begins or advance
+    fetch = assign(read, lambda: start or begins or advance)
 
     @always(clk.posedge)
     def step():

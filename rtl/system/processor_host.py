@@ -5,6 +5,7 @@ from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, bits_for, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.memory_map import BAUD_RATE, MEMORY_WORDS
 from raycaster.rtl.bus.avalon_host import avalon_host
 from raycaster.rtl.bus.bus_decoder import bus_decoder
@@ -63,9 +64,7 @@ def processor_host(clk, reset, buttons, irq, uart_tx, avm_m0, config: Configurat
     )  # fmt: skip
 
     # Only a write that sends a byte has to wait for the one before; a read shows in bit 0 that one is being sent.
-    @always_comb
-    def send():
-        byte_waits.next = uart.select and bus.strobe[0]
+    send = assign(byte_waits, lambda: uart.select and bus.strobe[0])
 
     @always_comb
     def answer():
@@ -73,8 +72,6 @@ def processor_host(clk, reset, buttons, irq, uart_tx, avm_m0, config: Configurat
         uart.word.next = 0
         uart.word.next[0] = not byte_accepted
 
-    @always_comb
-    def invert():
-        resetn.next = not reset
+    invert = assign(resetn, lambda: not reset)
 
     return instances()

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The ray tracer behind a bus, with a VGA output: the top module of the generated Verilog."""
 
-from myhdl import always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.buses import BUSES
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, derived_clock, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.registers import address_bits
 from raycaster.rtl.bus.avalon_interface import avalon_interface
 from raycaster.rtl.bus.buses import BRIDGES
@@ -80,9 +81,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
     if resting:
         scene_awake = bit()
 
-        @always_comb
-        def wake():
-            scene_awake.next = bus.access or bus.write or bus.commit or bus.go_live or progress.busy
+        wake = assign(scene_awake, lambda: bus.access or bus.write or bus.commit or bus.go_live or progress.busy)
 
         gate = clock_gate(clk, reset, awake=scene_awake, gated_clk=scene_clk)
     renderer = engine_of(config).renderer(

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The reset of a board: from power-up until the clock has been stable for a while."""
 
-from myhdl import always_comb, always_seq, block, instances
+from myhdl import always_seq, block, instances
 
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.synchroniser import synchroniser
 
 HOLD_CYCLES = 16
@@ -34,8 +35,6 @@ def reset_release(clk, ready, reset):
             held.next[HOLD_CYCLES:1] = held[last:]
             held.next[0] = True
 
-    @always_comb
-    def drive():
-        reset.next = not held[last]
+    drive = assign(reset, lambda: not held[last])
 
     return instances()

@@ -5,6 +5,7 @@ from myhdl import always_comb, always_seq, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.signals import bit, bits_for, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.program import scene_words
 from raycaster.registers import register_map
 from raycaster.rtl.common.synchroniser import synchroniser
@@ -65,9 +66,7 @@ def scene_player(clk, reset, buttons, irq, avm_m0, config: Configuration, scene:
     axis_z = camera_axis(clk, reset, move, more=up, less=down, start=start_z, position=z)
 
     # The camera moves when the part of the program for each frame starts.
-    @always_comb
-    def start_frame():
-        move.next = waiting and irq
+    start_frame = assign(move, lambda: waiting and irq)
 
     # Write after write, each until it is accepted; then wait for the next StartScreen.
     @always_seq(clk.posedge, reset=reset)

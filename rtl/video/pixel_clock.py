@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The monitor's clock, if a pixel takes one clock."""
 
-from myhdl import always_comb, block, instances
+from myhdl import block, instances
+
+from raycaster.hdl.verbs import assign
 
 
 @block
@@ -16,8 +18,6 @@ def pixel_clock(clk, vga_clk):
         vga_clk: output, clk inverted.
     """
 
-    @always_comb
-    def invert():
-        vga_clk.next = not clk
+    invert = assign(vga_clk, lambda: not clk)
 
     return instances()

@@ -4,6 +4,7 @@
 from myhdl import Signal, always, always_comb, always_seq, block, instances, intbv
 
 from raycaster.hdl.signals import bit, bits_for, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.video.pixel_clock import pixel_clock
 from raycaster.screens import Screen
 
@@ -58,10 +59,7 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0,
         monitor_clock = pixel_clock(clk, vga.clk)
 
     else:
-
-        @always_comb
-        def drive_clock():
-            vga.clk.next = pixel_end
+        drive_clock = assign(vga.clk, lambda: pixel_end)
 
     @always_seq(clk.posedge, reset=reset)
     def divide_clock():

@@ -12,7 +12,7 @@ from raycaster.hdl.internals import bits_of
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import less, minus, plus, times
+from raycaster.hdl.verbs import assign, less, minus, plus, times
 from raycaster.sim.simulator import find_tool
 
 
@@ -113,18 +113,20 @@ def test_fields_and_parts_belong_to_the_word(made):
 
 @block
 def with_verbs(a, b, behind, product):
-    """Compute with verbs only, except for the outputs."""
+    """Compute with verbs only."""
     total, add = plus(a, b, 5)
     difference, subtract = minus(a, b, Signed(5))
     tripled, multiply = times(total, 3, 7)
     is_less, compare = less(difference, 0)
+    # The result
+    # of two lines.
+    see = assign(
+        behind,
+        lambda: is_less,
+    )
+    show = assign(product, lambda: tripled)
 
-    @always_comb
-    def show():
-        behind.next = is_less
-        product.next = tripled
-
-    return add, subtract, multiply, compare, show
+    return add, subtract, multiply, compare, see, show
 
 
 def test_verbs(tmp_path, random):
@@ -140,3 +142,11 @@ def test_verbs(tmp_path, random):
         "total = a + b", "difference = a - b", "tripled = total * 3", "is_less = difference < 0",
         "behind = is_less", "product = tripled",
     ]  # fmt: skip
+    assert "\n// The result of two lines.\nassign behind = is_less;\n\nassign product" in text
+
+
+def test_a_line_has_one_lambda():
+    """A process is known by the line of its lambda."""
+    target, other, source = bit(), bit(), bit()
+    with pytest.raises(SyntaxError, match="one lambda in a line"):
+        assign(target, lambda: source), assign(other, lambda: not source)
