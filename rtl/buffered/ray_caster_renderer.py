@@ -149,10 +149,6 @@ def ray_caster_renderer(
             shown_unit.next = read_unit
 
     # Black until the first row is handed over.
-    @always_comb
-    def show():
-        pixel.word.next = 0
-        if handed_over:
-            pixel.word.next = sections[shown_unit]
+    show = assign(pixel.word, lambda: sections[shown_unit] if handed_over else 0)
 
     return instances()

@@ -127,12 +127,7 @@ def avalon_interface(
         )  # fmt: skip
 
         find_table = assign(at_table, lambda: bus.address == table_address)
-
-        @always_comb
-        def read_table():
-            elsewhere.next = rect_readback
-            if at_table:
-                elsewhere.next = table_value
+        read_table = assign(elsewhere, lambda: table_value if at_table else rect_readback)
 
     control_memory = scene_word(
         clk, reset, bus, select_control, implemented=control_bits, shadow=control_word, live=live_control
@@ -184,11 +179,7 @@ def avalon_interface(
         up_address = tied(registers["up"].address, len(bus.address))
 
         # The camera's registers have consecutive addresses.
-        @always_comb
-        def find_camera():
-            at_camera.next = bus.address >= camera_address
-            if bus.address > up_address:
-                at_camera.next = False
+        find_camera = assign(at_camera, lambda: camera_address <= bus.address <= up_address)
 
     else:
         find_camera = assign(at_camera, lambda: bus.address == camera_address)

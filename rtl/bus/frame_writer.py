@@ -44,11 +44,7 @@ def frame_writer(clk, reset, start, valid, word, last, ready, sending, data, acc
         if state == WriterState.WORDS:
             sending.next = valid
 
-    @always_comb
-    def choose_word():
-        source.next = check ^ 0xFFFF_FFFF
-        if in_words:
-            source.next = word
+    choose_word = assign(source, lambda: word if in_words else check ^ 0xFFFF_FFFF)
 
     @always_comb
     def choose_byte():

@@ -5,6 +5,7 @@ from myhdl import Signal, always_comb, always_seq, block, enum, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, bits_for, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.registers import register_map
 from raycaster.rtl.bus.frame_reader import frame_reader
 from raycaster.rtl.bus.frame_writer import frame_writer
@@ -108,17 +109,8 @@ def uart_bridge(clk, reset, uart, avm_m0, clock_hz: int, baud: int, places: int)
         avm_m0.writedata.next = shown
         avm_m0.byteenable.next = every_lane
 
-    @always_comb
-    def count_on():
-        next_address.next = 0
-        if address != last_address:
-            next_address.next = address + 1
-
-    @always_comb
-    def choose_answer():
-        answer.next = avm_m0.readdata
-        if at_head:
-            answer.next = head
+    count_on = assign(next_address, lambda: address + 1 if address != last_address else 0)
+    choose_answer = assign(answer, lambda: head if at_head else avm_m0.readdata)
 
     # headless: no access of the frame has begun. at_head: the first word of the answer is next.
     @always_seq(clk.posedge, reset=reset)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The magnitude of a signed number."""
 
-from myhdl import always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.hdl.signals import signed
 from raycaster.hdl.verbs import assign
@@ -19,12 +19,6 @@ def magnitude(value, result):
     opposite = signed(len(value))
 
     negate = assign(opposite, lambda: -value)
-
-    @always_comb
-    def choose():
-        if value < 0:
-            result.next = opposite[bits:]
-        else:
-            result.next = value[bits:]
+    choose = assign(result, lambda: opposite[bits:] if value < 0 else value[bits:])
 
     return instances()

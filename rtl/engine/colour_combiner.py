@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The colour of a pixel, added up from its ray and the ray's reflections one after the other."""
 
-from myhdl import always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import unsigned
@@ -42,12 +42,7 @@ def colour_combiner(clk, steps, found, found_colour, found_mirror, picture, miss
     ]
 
     # A ray that missed has no reflection, whatever the units find afterwards.
-    @always_comb
-    def look():
-        if found and not missed:
-            ray_colour.word.next = found_colour
-        else:
-            ray_colour.word.next = picture.background
+    look = assign(ray_colour.word, lambda: found_colour if found and not missed else picture.background)
 
     blended = pixel.joined(red=red, green=green, blue=blue)
 

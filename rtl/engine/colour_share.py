@@ -66,11 +66,7 @@ def colour_share(clk, steps, found, found_mirror, share, missed, config: Configu
 
     else:
         # A ray keeps as much as it passes on.
-        @always_comb
-        def keep():
-            share.next = weight
-            if steps.store_ray:
-                share.next = weight >> 1
+        keep = assign(share, lambda: weight >> 1 if steps.store_ray else weight)
 
         pass_on = assign(left, lambda: share)
 

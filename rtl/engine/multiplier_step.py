@@ -4,7 +4,7 @@
 from myhdl import always_comb, block, concat, instances
 
 from raycaster.hdl.signals import Signed, signed
-from raycaster.hdl.verbs import minus, plus
+from raycaster.hdl.verbs import assign, minus, plus
 
 
 @block
@@ -25,12 +25,7 @@ def multiplier_step(multiplicand, total, digits, next_total, next_digits, subtra
     addend = signed(width)
     added, add = (minus if subtract else plus)(total, addend, Signed(width + 1))
 
-    @always_comb
-    def select():
-        if digits[0]:
-            addend.next = multiplicand
-        else:
-            addend.next = 0
+    select = assign(addend, lambda: multiplicand if digits[0] else 0)
 
     @always_comb
     def shift():

@@ -4,6 +4,7 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.hdl.signals import bit
+from raycaster.hdl.verbs import assign
 
 
 @block
@@ -30,11 +31,6 @@ def pattern_colour(look, odd_u, odd_v, colour):
         elif look.kind == 3:
             second.next = odd_u
 
-    @always_comb
-    def choose_colour():
-        if second:
-            colour.next = look.colour_2
-        else:
-            colour.next = look.colour
+    choose_colour = assign(colour, lambda: look.colour_2 if second else look.colour)
 
     return instances()

@@ -149,25 +149,11 @@ def ray_sequencer(
             from_light = unsigned(config.rectangles)
 
             look_from_light = assign(from_light, lambda: shadow_masks[bounce])
+            choose_next = assign(wanted_next, lambda: from_light if shadow_pass.comes_next else after_this)
 
-            @always_comb
-            def choose_next():
-                wanted_next.next = after_this
-                if shadow_pass.comes_next:
-                    wanted_next.next = from_light
-
-        @always_comb
-        def choose_wanted():
-            wanted.next = first
-            if state == RayState.TRACE:
-                wanted.next = wanted_next
+        choose_wanted = assign(wanted, lambda: wanted_next if state == RayState.TRACE else first)
 
     else:
-
-        @always_comb
-        def choose_wanted():
-            wanted.next = rects.usable & fate.may_hit
-            if state == RayState.TRACE:
-                wanted.next = rects.usable
+        choose_wanted = assign(wanted, lambda: rects.usable if state == RayState.TRACE else rects.usable & fate.may_hit)
 
     return instances()

@@ -39,12 +39,7 @@ def rect_sequencer(
     see_take = assign(take, lambda: start_ray or (fetched and (early_out or cycle == last_cycle)))
 
     # While no test is under way, the next ray's first rectangle is chosen: that ray wants all of them again.
-    @always_comb
-    def choose_candidates():
-        if take:
-            candidates.next = waiting
-        else:
-            candidates.next = wanted
+    choose_candidates = assign(candidates, lambda: waiting if take else wanted)
 
     # The lowest rectangle comes first, so that it wins at equal distances; the others keep waiting.
     @always_comb

@@ -5,6 +5,7 @@ from myhdl import always_comb, block, instances
 
 from raycaster.configuration import CHANNEL_BITS
 from raycaster.hdl.signals import unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.records import Colour
 
 
@@ -30,10 +31,6 @@ def shade_colour(colour, dark, shade, shaded):
         green.next = shade * colour.green
         blue.next = shade * colour.blue
 
-    @always_comb
-    def choose():
-        shaded.next = colour.word
-        if dark:
-            shaded.next = dim
+    choose = assign(shaded, lambda: dim if dark else colour.word)
 
     return instances()

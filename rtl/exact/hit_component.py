@@ -29,12 +29,7 @@ def hit_component(eye, back, slope, distance, e, component):
     from_eye, along, total = (unsigned(bits + 1) for _ in range(3))
 
     extend = assign(divisor, lambda: e)
-
-    @always_comb
-    def turn_way():
-        flipped_way.next = way
-        if back:
-            flipped_way.next = ~way
+    turn_way = assign(flipped_way, lambda: ~way if back else way)
 
     # An extra lowest bit carries in the 1 that completes the two's complement.
     @always_comb

@@ -94,12 +94,7 @@ def shadow_ray(
         inverse.next = ~sum_2
 
     negate = assign(negated, lambda: (inverse + 1) % (1 << sum_bits))
-
-    @always_comb
-    def measure_slope():
-        magnitude.next = sum_2[light_bits:]
-        if back_2:
-            magnitude.next = negated[light_bits:]
+    measure_slope = assign(magnitude, lambda: negated[light_bits:] if back_2 else sum_2[light_bits:])
 
     @always(clk.posedge)
     def keep():

@@ -82,12 +82,7 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
                 readback.next = light_word
 
     else:
-
-        @always_comb
-        def read():
-            readback.next = position_word
-            if select_light:
-                readback.next = light_word
+        read = assign(readback, lambda: light_word if select_light else position_word)
 
     join = assign(camera.word, lambda: whole)
 

@@ -140,12 +140,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
             mask_2.next = bus.mask
 
     if config.patterns:
-
-        @always_comb
-        def select_pattern():
-            mask_3.next = 0
-            if bus.address[2:] == 3:
-                mask_3.next = bus.mask
+        select_pattern = assign(mask_3, lambda: bus.mask if bus.address[2:] == 3 else 0)
 
     whole_mask = mask.joined(corner_0=mask_0, corner_1=mask_1, surface=mask_2, pattern=mask_3)
     whole_data = data.joined(corner_0=bus.data, corner_1=bus.data, surface=bus.data, pattern=bus.data)

@@ -69,20 +69,11 @@ def rect_sorter(written, rect, config: Configuration):
             v_high.next = y_high
 
     if config.materials:
-
-        @always_comb
-        def limit_mirror():
-            mirror.next = written.mirror
-            if written.mirror > 4:
-                mirror.next = 4
+        limit_mirror = assign(mirror, lambda: 4 if written.mirror > 4 else written.mirror)
 
     if config.patterns:
         # With a cell as large as the world, no cell is odd.
-        @always_comb
-        def drop_large_cells():
-            kind.next = written.kind
-            if written.cell >= cells:
-                kind.next = 0
+        drop_large_cells = assign(kind, lambda: 0 if written.cell >= cells else written.kind)
 
     whole = rect.joined(
         axis=axis, position=position, colour=written.colour, mirror=mirror, kind=kind, cell=written.cell,

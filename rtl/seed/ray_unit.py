@@ -82,12 +82,7 @@ def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pix
 
     primary = ray.joined(x=start_x, y=start_y, z=start_z, dx=initial_signs.dx, dy=initial_signs.dy, dz=initial_signs.dz)
 
-    @always_comb
-    def choose_ray():
-        if steps.initial_ray:
-            ray.word.next = primary
-        else:
-            ray.word.next = reflected.word
+    choose_ray = assign(ray.word, lambda: primary if steps.initial_ray else reflected.word)
 
     # Hits after a ray has ended do not count.
     if config.materials:

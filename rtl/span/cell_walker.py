@@ -86,11 +86,7 @@ def cell_walker(
             eye_w.next = grid.eye_v
 
     # The edge above the present cell is asked for first, then the one below it.
-    @always_comb
-    def choose_edge():
-        number.next = present + 1
-        if second:
-            number.next = present
+    choose_edge = assign(number, lambda: present if second else present + 1)
 
     @always_comb
     def scale():

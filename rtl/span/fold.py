@@ -46,12 +46,7 @@ def fold(chain, winner, column, stop, corner, weight, folded, config: Configurat
         distance.next = winner.distance
         towards.next = winner.back != back_a
 
-    @always_comb
-    def turn():
-        way.next = distance
-        if towards:
-            way.next = -distance
-
+    turn = assign(way, lambda: -distance if towards else distance)
     double = assign(twice, lambda: way << 1)
     keep = assign(mirrored, lambda: whole[far_bits:].signed())
 

@@ -122,11 +122,7 @@ def half_lines(
     # In a column with a slope of 0, each component is 0 or changes its sign within the chain.
     see_vanishing = assign(may_vanish, lambda: ((fore_left & fore_right) | (aft_left & aft_right)) == 0)
 
-    @always_comb
-    def choose_candidates():
-        candidates.next = waiting
-        if start:
-            candidates.next = rects.usable
+    choose_candidates = assign(candidates, lambda: rects.usable if start else waiting)
 
     if count <= MOST_IN_A_CHAIN:
 
@@ -323,11 +319,7 @@ def half_lines(
         )
     ]  # fmt: skip
 
-    @always_comb
-    def choose_axis():
-        axis_w.next = axis_v
-        if on_u:
-            axis_w.next = axis_u
+    choose_axis = assign(axis_w, lambda: axis_u if on_u else axis_v)
 
     @always_comb
     def extend_bound():
@@ -346,11 +338,7 @@ def half_lines(
             mirror_axis.next = chain.axis
             mirror_distance.next = chain.distance
 
-        @always_comb
-        def see_last_number():
-            last_number.next = V_HIGH
-            if crosses_1:
-                last_number.next = BEYOND
+        see_last_number = assign(last_number, lambda: BEYOND if crosses_1 else V_HIGH)
 
         weighed_crosses = bit()
 

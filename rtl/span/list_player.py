@@ -85,11 +85,7 @@ def list_player(
             bank_place.next = write_place[place_bits:]
             bank_first.next = place[place_bits:]
 
-        @always_comb
-        def count():
-            taken.next = 0
-            if bank_take:
-                taken.next = 1
+        count = assign(taken, lambda: 1 if bank_take else 0)
 
     else:
         write_even, write_odd = writes

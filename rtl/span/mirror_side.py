@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.signals import bit, signed, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.by_axis import along_u, by_axis
 from raycaster.rtl.common.widths import AXIS_BITS, eye_bits
 
@@ -45,11 +46,7 @@ def mirror_side(clk, chain, rect, hidden, crosses, config: Configuration):
         upwards.next = back_a == chain.back
         distance.next = chain.distance
 
-    @always_comb
-    def find_plane():
-        whole.next = eye_a - distance
-        if upwards:
-            whole.next = eye_a + distance
+    find_plane = assign(whole, lambda: eye_a + distance if upwards else eye_a - distance)
 
     @always(clk.posedge)
     def keep():

@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.by_axis import by_axis
 from raycaster.rtl.common.widths import AXIS_BITS, column_bits, span_slope_bits, step_bits
 
@@ -44,12 +45,7 @@ def operand_ends(
     if config.turn:
         change = by_axis(axis, step.x, step.y, step.z, move, width=growth_bits)
     else:
-
-        @always_comb
-        def see_change():
-            move.next = 0
-            if axis == 1:
-                move.next = 1
+        see_change = assign(move, lambda: 1 if axis == 1 else 0)
 
     @always_comb
     def extend():

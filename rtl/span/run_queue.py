@@ -4,6 +4,7 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.hdl.signals import bit, bits_for, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.span.read_ahead import read_ahead
 from raycaster.rtl.span.run_memory import BANK_PLACES, read_latency, run_memory
 
@@ -64,11 +65,7 @@ def run_queue(
             else:
                 write_place.next = write_place + 1
 
-    @always_comb
-    def see_change():
-        change.next = 1
-        if fetch:
-            change.next = minus_one
+    see_change = assign(change, lambda: minus_one if fetch else 1)
 
     @always(clk.posedge)
     def count():

@@ -5,6 +5,7 @@ from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.by_axis import by_axis
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
@@ -67,11 +68,7 @@ def shadow_finder(
         light_y.next = camera.light_y
         light_z.next = camera.light_z
 
-    @always_comb
-    def see_axis():
-        axis_1.next = axis[AXIS_BITS:]
-        if axis == 3:
-            axis_1.next = winner.axis
+    see_axis = assign(axis_1, lambda: winner.axis if axis == 3 else axis[AXIS_BITS:])
 
     choices = (
         by_axis(axis_1, chain.eye_x, chain.eye_y, chain.eye_z, eye_q, width=far_bits),

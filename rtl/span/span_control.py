@@ -112,11 +112,7 @@ def span_control(
         push.next = state == SpanState.DESCEND
         fetch.next = (state == SpanState.RETURN) or (entering and (state == SpanState.SWEEP) and not gap)
 
-    @always_comb
-    def show_colour():
-        colour.next = rect.colour
-        if gap:
-            colour.next = picture.background
+    show_colour = assign(colour, lambda: picture.background if gap else rect.colour)
 
     if mirrors and config.materials:
         see_mirror = assign(mirrored, lambda: rect.mirror)
@@ -139,12 +135,7 @@ def span_control(
 
         judge = assign(leaf, lambda: gap or (level == reflections) or (mirrored == 0))
         see_weight = assign(weight, lambda: chain.weight)
-
-        @always_comb
-        def see_own():
-            own.next = 4
-            if not leaf:
-                own.next = 4 - mirrored
+        see_own = assign(own, lambda: 4 if leaf else 4 - mirrored)
 
         shares = (
             quarters_of(weight=weight, quarters=own, share=share),

@@ -5,6 +5,7 @@ from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, tied, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.by_axis import along_u, along_v, by_axis
 from raycaster.rtl.common.widths import column_bits, eye_bits, level_bits
 from raycaster.rtl.span.cell_walker import cell_walker
@@ -97,11 +98,7 @@ def surface_cells(
             else:
                 all_cells[looked].next = gone_u
 
-    @always_comb
-    def choose_level():
-        looked.next = seen
-        if painting:
-            looked.next = level
+    choose_level = assign(looked, lambda: level if painting else seen)
 
     @always_comb
     def look_up():

@@ -77,11 +77,7 @@ def surface_light(
     )
 
     # The eye is in front of the surface, on the side of the smaller coordinates unless the ray runs towards them.
-    @always_comb
-    def see_front():
-        front.next = light_a < rect.position
-        if winner.back != back_a:
-            front.next = light_a > rect.position
+    see_front = assign(front, lambda: light_a > rect.position if winner.back != back_a else light_a < rect.position)
 
     @always_comb
     def see_light():

@@ -86,11 +86,7 @@ def surfaces(
     if patterns:
         odd_u, odd_v = bit(), bit()
 
-        @always_comb
-        def see_kind():
-            kind.next = rect.kind
-            if unseen:
-                kind.next = 0
+        see_kind = assign(kind, lambda: 0 if unseen else rect.kind)
 
         cells = surface_cells(
             clk=clk, reset=reset, paint=paint, level=level, kind=kind, rect=rect, chain=chain, winner=winner,
@@ -123,12 +119,7 @@ def surfaces(
             stepped.next = cells_stepped
 
     if patterns and light:
-
-        @always_comb
-        def see_next():
-            next_column.next = next_cells
-            if next_light < next_cells:
-                next_column.next = next_light
+        see_next = assign(next_column, lambda: next_light if next_light < next_cells else next_cells)
 
     elif patterns:
         see_next = assign(next_column, lambda: next_cells)

@@ -90,17 +90,9 @@ def sweep(
         outlasts.next = tested.stop > winner.stop
 
     # An entry opens if it has not ended; in a gap, if it has not begun before.
-    @always_comb
-    def see_open():
-        opens.next = (tested.index != winner.index) and (tested.stop > column)
-        if gap:
-            opens.next = ahead
+    see_open = assign(opens, lambda: ahead if gap else (tested.index != winner.index) and (tested.stop > column))
 
-    @always_comb
-    def count_down():
-        left_over.next = rest
-        if begins:
-            left_over.next = count
+    count_down = assign(left_over, lambda: count if begins else rest)
 
     @always(clk.posedge)
     def keep_present():
@@ -121,11 +113,7 @@ def sweep(
             outlasts_1.next = outlasts
 
     # Where the entry would come first: where both are met, or after a division at the crossing.
-    @always_comb
-    def find_place():
-        at.next = left_1
-        if state == SweepState.CROSS:
-            at.next = crossing
+    find_place = assign(at, lambda: crossing if state == SweepState.CROSS else left_1)
 
     # An entry that does not begin too late; it may also begin where the winner ends.
     @always_comb
@@ -167,12 +155,7 @@ def sweep(
             here.next = True
             found.next = crossed
 
-    @always_comb
-    def find_column():
-        found_at.next = stop
-        if here:
-            found_at.next = at
-
+    find_column = assign(found_at, lambda: at if here else stop)
     see_change = assign(changes, lambda: (answer.left < 0) and (answer.right >= 0))
 
     @always_comb
@@ -261,11 +244,7 @@ def sweep(
         bound_1.next = (winner.stop - 1) % (1 << width)
         last.next = (present.stop - 1) % (1 << width)
 
-    @always_comb
-    def see_right():
-        right.next = bound
-        if last < bound:
-            right.next = last
+    see_right = assign(right, lambda: last if last < bound else bound)
 
     @always_comb
     def choose_rival():
