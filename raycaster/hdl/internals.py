@@ -17,6 +17,7 @@ from types import CellType, CodeType, FunctionType
 from typing import Any
 
 from myhdl import ConcatSignal, concat, intbv
+from myhdl._always import _Always
 from myhdl._always_comb import _AlwaysComb
 from myhdl._block import _Block as Block
 from myhdl._enum import EnumItemType, EnumType
@@ -73,15 +74,18 @@ class DerivedClock(SignalType):
         self._posedgeWaiters = self._Edges(self, source)
 
 
-class Assignment(_AlwaysComb):
-    """A combinational process of one assignment: a call's first argument is driven, its second one has the value."""
+class _Written(Process):
+    """A process of one assignment that is written as a call with a lambda.
 
-    def __init__(self, value: FunctionType, block: Any):
-        """Create it from the call's second argument, a lambda, and from the block, as `calling_block` returns it."""
-        self._tree, code = _assignment(value.__code__.co_filename, value.__code__)
+    The lambda has the value. The argument before it is driven, if the argument after it is high or there is none.
+    """
+
+    def _made(self, value: FunctionType, block: Any) -> FunctionType:
+        """Return the process's function; the block is what `calling_block` returns."""
+        self._tree, code = _written(value.__code__.co_filename, value.__code__)
         cells = dict(zip(value.__code__.co_freevars, value.__closure__ or (), strict=True))
         closure = tuple(cells.get(name) or CellType(block.symdict[name]) for name in code.co_freevars)
-        super().__init__(FunctionType(code, value.__globals__, code.co_name, None, closure), block)
+        return FunctionType(code, value.__globals__, code.co_name, None, closure)
 
     @property
     def ast(self) -> Any:
@@ -89,20 +93,41 @@ class Assignment(_AlwaysComb):
         return copy.deepcopy(self._tree)
 
 
+class Assignment(_Written, _AlwaysComb):
+    """A combinational process of one assignment."""
+
+    def __init__(self, value: FunctionType, block: Any):
+        """Create it from a call's lambda, and from the block that calls."""
+        super().__init__(self._made(value, block), block)
+
+
+class Register(_Written, _Always):
+    """A process of one assignment at the rising edges of a clock."""
+
+    def __init__(self, clk: SignalType, value: FunctionType, block: Any):
+        """Create it from the clock, a call's lambda, and the block that calls."""
+        clk._read = clk._used = True
+        clocks = {name: clk for name, known in block.symdict.items() if known is clk}
+        super().__init__(self._made(value, block), (clk.posedge,), block, clocks)
+
+
 @functools.cache
-def _assignment(file: str, value: CodeType) -> tuple[Any, CodeType]:  # equal code may be in two files
+def _written(file: str, value: CodeType) -> tuple[Any, CodeType]:  # equal code may be in two files
     """Return the syntax tree and the code of the process to which a lambda gives its value."""
     calls = _calls("".join(inspect.findsource(value)[0])).get(value.co_firstlineno, [])
     if len(calls) != 1:
         raise SyntaxError("expected one lambda in a line", (file, value.co_firstlineno, 0, ""))
     [call] = calls
-    [target, function] = call.args
+    place = next(index for index, one in enumerate(call.args) if isinstance(one, ast.Lambda))
+    target, function, *conditions = call.args[place - 1 :]
     driven: Any = ast.Attribute(target, "next", ast.Store())
-    names = {node.id for node in ast.walk(target) if isinstance(node, ast.Name)}
-    arguments = [ast.arg(name) for name in sorted({*value.co_freevars, *names})]
-    root = next(node.id for node in ast.walk(target) if isinstance(node, ast.Name))
+    statement: Any = ast.Assign([driven], function.body)
+    if conditions:
+        statement = ast.If(conditions[0], [statement], [])
+    around = [node.id for one in (target, *conditions) for node in ast.walk(one) if isinstance(node, ast.Name)]
+    arguments = [ast.arg(name) for name in sorted({*value.co_freevars, *around})]
     none: Any = ast.arguments([], [], None, [], [], None, [])
-    process = ast.FunctionDef(root, none, [ast.Assign([driven], function.body)], [])
+    process = ast.FunctionDef(around[0], none, [statement], [])
     block = ast.FunctionDef("block", ast.arguments([], arguments, None, [], [], None, []), [process], [])
     tree: Any = ast.Module([process], [])
     for node in (process, block):
@@ -116,11 +141,12 @@ def _assignment(file: str, value: CodeType) -> tuple[Any, CodeType]:  # equal co
 
 @functools.cache
 def _calls(source: str) -> dict[int, list[Any]]:
-    """Return all calls with a signal and a lambda, by the line of the lambda."""
+    """Return all calls with a lambda, by the line of the lambda."""
     found: dict[int, list[Any]] = {}
     for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Call) and len(node.args) == 2 and isinstance(node.args[1], ast.Lambda):
-            found.setdefault(node.args[1].lineno, []).append(node)
+        for function in node.args if isinstance(node, ast.Call) else ():
+            if isinstance(function, ast.Lambda):
+                found.setdefault(function.lineno, []).append(node)
     return found
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from myhdl import Signal, always_comb
 
-from raycaster.hdl.internals import Assignment, Process, SignalType, adopted, calling_block
+from raycaster.hdl.internals import Assignment, Process, Register, SignalType, adopted, calling_block
 from raycaster.hdl.signals import initial
 
 
@@ -20,6 +20,15 @@ def assign(target: SignalType, value: Callable[[], Any]) -> Assignment:
     """Return a process that drives a signal with the value of a lambda: `assign(carry, lambda: a and b)`."""
     assert isinstance(value, FunctionType)
     return Assignment(value, calling_block())
+
+
+def register(clk: SignalType, target: SignalType, value: Callable[[], Any], when: SignalType | bool = True) -> Register:
+    """Return a process that a clock drives: `register(clk, memory[place], lambda: word, write)`.
+
+    It takes the value at the clock's rising edges at which the last argument is high, and always if there is none.
+    """
+    assert isinstance(value, FunctionType)
+    return Register(clk, value, calling_block())
 
 
 def plus(_a: Any, _b: Any, width: int) -> tuple[SignalType, Process]:

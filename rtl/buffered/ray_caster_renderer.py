@@ -3,11 +3,11 @@
 
 from collections.abc import Callable
 
-from myhdl import always, always_comb, always_seq, block, instances
+from myhdl import always_comb, always_seq, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, bits_for, derived_clock, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.buffered.ray_caster import ray_caster
 from raycaster.rtl.common.clock_gate import clock_gate
 from raycaster.rtl.common.interfaces import Place, Scan
@@ -86,9 +86,7 @@ def ray_caster_renderer(
     finish_group = assign(restart, lambda: reset or scan.start_screen or scan.start_row or done)
 
     # The seed's reset delay: in the second cycle of a reset, the comparison with Max sees the new column offset.
-    @always(clk.posedge)
-    def delay_reset():
-        reset_delay.next = restart
+    delay_reset = register(clk, reset_delay, lambda: restart)
 
     join_resets = assign(reset_ray_caster, lambda: restart or reset_delay)
 
@@ -144,9 +142,7 @@ def ray_caster_renderer(
 
     if one_clock:
         # Delayed as much as the pixels that the line buffer reads.
-        @always(clk.posedge)
-        def follow_unit():
-            shown_unit.next = read_unit
+        follow_unit = register(clk, shown_unit, lambda: read_unit)
 
     # Black until the first row is handed over.
     show = assign(pixel.word, lambda: sections[shown_unit] if handed_over else 0)

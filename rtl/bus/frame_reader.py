@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The reader of frames from a serial line."""
 
-from myhdl import always, always_comb, always_seq, block, instances
+from myhdl import always_comb, always_seq, block, instances
 
 from raycaster.hdl.signals import Unset, bit, bits_for, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.bus.frame_check import CHECK_BITS, RESIDUE, frame_check
 from raycaster.rtl.bus.uart_transmitter import DATA_BITS
 from raycaster.rtl.common.widths import WORD_BITS
@@ -88,13 +88,7 @@ def frame_reader(clk, reset, received, data, good, words, place, shown, places: 
             else:
                 count.next = count + 1
 
-    @always(clk.posedge)
-    def keep():
-        if store:
-            memory[at].next = word
-
-    @always(clk.posedge)
-    def fetch():
-        shown.next = memory[place]
+    keep = register(clk, memory[at], lambda: word, store)
+    fetch = register(clk, shown, lambda: memory[place])
 
     return instances()

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """A bridge from Wishbone to an Avalon-MM agent."""
 
-from myhdl import always, always_comb, always_seq, block, instances
+from myhdl import always_comb, always_seq, block, instances
 
 from raycaster.hdl.signals import bit, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.interfaces import BusPort
 from raycaster.rtl.common.widths import LANES, WORD_BITS
 
@@ -64,9 +64,7 @@ def wishbone_bridge(clk, reset, wb, avm_m0):
             reading.next = selected and not wb.we and not avm_m0.waitrequest
 
     # still_wanted: the master has not abandoned the read; don't care unless reading.
-    @always(clk.posedge)
-    def follow_master():
-        still_wanted.next = selected and (still_wanted or not reading)
+    follow_master = register(clk, still_wanted, lambda: selected and (still_wanted or not reading))
 
     @always_comb
     def answer():

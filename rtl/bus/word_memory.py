@@ -7,7 +7,7 @@ from myhdl import Signal, always, always_comb, always_seq, block, instances, int
 
 from raycaster.hdl.given import load_words
 from raycaster.hdl.signals import bit
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.widths import WORD_BITS
 
 
@@ -54,10 +54,7 @@ def word_memory(clk, reset, access, strobe, address, data, words: int, program: 
             memory[address].next[32:24] = data[32:24]
 
     # Never in the cycle of a write, so it does not matter what the memory would read then.
-    @always(clk.posedge)
-    def fetch():
-        if reading:
-            access.word.next = memory[address]
+    fetch = register(clk, access.word, lambda: memory[address], reading)
 
     @always_seq(clk.posedge, reset=reset)
     def finish():

@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit, signed, tied, unsigned
-from raycaster.hdl.verbs import assign, times
+from raycaster.hdl.verbs import assign, register, times
 from raycaster.rtl.common.interfaces import Place, Rects, Vector
 from raycaster.rtl.common.records import Facet, Walk, WideRect
 from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, wide_walk_bits
@@ -69,10 +69,7 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
     compare_with_first = assign(first_group, lambda: (place.row == 0) and (place.column_offset == 0))
 
     # A new scene goes live only before a frame's first group.
-    @always(clk.posedge)
-    def know_rects():
-        if first_group:
-            rects_known.next = done
+    know_rects = register(clk, rects_known, lambda: done, first_group)
 
     start_prediction = assign(start_sweep, lambda: start_group and rects_known)
 

@@ -6,7 +6,7 @@ from myhdl import always, always_comb, block, instances
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import minus, plus
+from raycaster.hdl.verbs import minus, plus, register
 from raycaster.rtl.common.widths import AXIS_BITS, WIDE_BITS, index_bits
 
 
@@ -40,15 +40,8 @@ def rect_copy(clk, rects, copy, margin: int, config: Configuration):
         v_high=rect.v_high,
     )  # fmt: skip
 
-    @always(clk.posedge)
-    def write():
-        if at_hand:
-            words[number].next = bare
-
-    @always(clk.posedge)
-    def read():
-        if copy.fetch:
-            kept.word.next = words[copy.index]
+    write = register(clk, words[number], lambda: bare, at_hand)
+    read = register(clk, kept.word, lambda: words[copy.index], copy.fetch)
 
     @always_comb
     def extend():
@@ -62,8 +55,6 @@ def rect_copy(clk, rects, copy, margin: int, config: Configuration):
         v_high=wide_v_high,
     )  # fmt: skip
 
-    @always(clk.posedge)
-    def present():
-        copy.rect.word.next = wide
+    present = register(clk, copy.rect.word, lambda: wide)
 
     return instances()

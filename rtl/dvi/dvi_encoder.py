@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """An encoder from the VGA output to the symbols of a DVI link."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always_comb, block, concat, instances
 
 from raycaster.hdl.signals import bit, tied, unsigned
+from raycaster.hdl.verbs import register
 from raycaster.rtl.dvi.tmds_encoder import tmds_encoder
 
 
@@ -31,10 +32,7 @@ def dvi_encoder(clk, pixel_end, vga, blue, green, red, pixel):
     green_channel = tmds_encoder(clk, pixel_end, data=vga.g, control=none, visible=vga.blank_n, symbol=green)
     red_channel = tmds_encoder(clk, pixel_end, data=vga.r, control=none, visible=vga.blank_n, symbol=red)
 
-    @always(clk.posedge)
-    def mark():
-        if pixel_end:
-            marked.next = not marked
+    mark = register(clk, marked, lambda: not marked, pixel_end)
 
     @always_comb
     def join():

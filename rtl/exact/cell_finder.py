@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS
 from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.verbs import register
 from raycaster.rtl.common.widths import SMALLEST_CELL_BITS
 from raycaster.rtl.engine.divider_step import divider_step
 from raycaster.rtl.exact.hit_component import hit_component
@@ -95,9 +96,6 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
             if found_surface.cell == size:
                 odd_v.next = digits_2[size]
 
-    @always(clk.posedge)
-    def keep_u():
-        if steps.store_quotient:
-            odd_u.next = odd_v
+    keep_u = register(clk, odd_u, lambda: odd_v, steps.store_quotient)
 
     return instances()

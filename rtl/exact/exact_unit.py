@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """A unit of the exact engine: a ray, its nearest hit, its reflections, and the colour of its pixel."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, unconnected, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.interfaces import Slope, Vector
 from raycaster.rtl.common.records import Colour, Mirror, Signs, Surface
 from raycaster.rtl.common.widths import RGB_BITS, exact_slope_bits, eye_bits, light_slope_bits
@@ -103,10 +103,7 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
 
         if config.light:
             # The divider keeps running during the shadow pass.
-            @always(clk.posedge)
-            def keep_cell():
-                if steps.aim[0]:
-                    kept_odd_v.next = odd_v
+            keep_cell = register(clk, kept_odd_v, lambda: odd_v, steps.aim[0])
 
     if config.light:
         lit_colour, dark, facing, looking, shaded = Colour(), bit(), bit(), bit(), bit()

@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import assign, minus
+from raycaster.hdl.verbs import assign, minus, register
 from raycaster.rtl.common.by_axis import along_a, along_u, along_v, by_axis
 from raycaster.rtl.exact.extent_tester import extent_tester
 
@@ -114,17 +114,9 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
     measured = seen_1.joined(crosses=crosses, mirror_on_a=mirror_on_a, met=met, n=n(distance_bits, 0), e=e)
     clipped = seen_2.joined(crosses=beyond, met=seen_1.met, n=seen_1.n, e=seen_1.e)
 
-    @always(clk.posedge)
-    def stage_1():
-        if steps.find_intersection:
-            seen_1.word.next = measured
-
+    stage_1 = register(clk, seen_1.word, lambda: measured, steps.find_intersection)
     clip = assign(beyond, lambda: seen_1.crosses and ((not seen_1.mirror_on_a) or (seen_1.n > mirror.distance)))
-
-    @always(clk.posedge)
-    def stage_2():
-        seen_2.word.next = clipped
-
+    stage_2 = register(clk, seen_2.word, lambda: clipped)
     compare_with_mirror = assign(in_mirror, lambda: in_mirror_u or in_mirror_v)
 
     @always(clk.posedge)

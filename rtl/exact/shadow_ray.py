@@ -4,7 +4,7 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import assign, minus
+from raycaster.hdl.verbs import assign, minus, register
 from raycaster.rtl.common.by_axis import by_axis
 from raycaster.rtl.common.widths import AXIS_BITS
 from raycaster.rtl.exact.hit_component import hit_component
@@ -84,9 +84,7 @@ def shadow_ray(
         eye=difference_1, back=back_1, slope=slope_1, distance=found_distance, e=found_slope, component=aimed
     )  # fmt: skip
 
-    @always(clk.posedge)
-    def stage_2():
-        sum_2.next = aimed
+    stage_2 = register(clk, sum_2, lambda: aimed)
 
     @always_comb
     def invert():

@@ -5,7 +5,7 @@ from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, signed, unsigned
-from raycaster.hdl.verbs import less, plus, times
+from raycaster.hdl.verbs import less, plus, register, times
 from raycaster.rtl.common.magnitude import magnitude
 
 
@@ -46,9 +46,7 @@ def slope_component(
     absolute = magnitude(component, component_size)
 
     # start is the same in all units, so synthesis keeps one of them.
-    @always(clk.posedge)
-    def keep_start():
-        start.next = total
+    keep_start = register(clk, start, lambda: total)
 
     @always(clk.posedge)
     def load():

@@ -5,7 +5,7 @@ from myhdl import Signal, always, always_comb, always_seq, block, concat, instan
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, side_by_side, signed, tied, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import WORD_BITS, index_bits
 from raycaster.rtl.scene.rect_slot import rect_slot
@@ -151,11 +151,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
         data.word.next = whole_data
 
     merge = assign(merged.word, lambda: ((old.word & ~mask.word) | (data.word & mask.word)) & implemented)
-
-    @always(clk.posedge)
-    def store_shadow():
-        if write:
-            shadow_words[index].next = merged.word
+    store_shadow = register(clk, shadow_words[index], lambda: merged.word, write)
 
     @always_seq(clk.posedge, reset=reset)
     def remember_written():
@@ -199,10 +195,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
         write_address.next = concat(bank, latest_index)
         read_address.next = concat(read_copies.live, rects.index)
 
-    @always(clk.posedge)
-    def store_sorted():
-        if storing:
-            banks[write_address].next = sorted_rect.word
+    store_sorted = register(clk, banks[write_address], lambda: sorted_rect.word, storing)
 
     @always_comb
     def show_slots():
@@ -214,9 +207,6 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     # No usable rectangle is in a bank that is being written.
     see_reading = assign(reads, lambda: rects.fetch and not (storing and write_address == read_address))
 
-    @always(clk.posedge)
-    def present():
-        if reads:
-            rects.rect.word.next = banks[read_address]
+    present = register(clk, rects.rect.word, lambda: banks[read_address], reads)
 
     return instances()

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The rectangles of a fixed scene, instead of rect_mem."""
 
-from myhdl import always, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.fixed import varying_bits
 from raycaster.hdl.signals import tied, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 
 
 @block
@@ -25,11 +25,7 @@ def rect_rom(clk, rects, config: Configuration):
     varying, same = tied(varying_bits(table), width), tied(table[0] & ~varying_bits(table), width)
     looked_up = unsigned(width)
 
-    @always(clk.posedge)
-    def look_up():
-        if rects.fetch:
-            looked_up.next = table[int(rects.index)]
-
+    look_up = register(clk, looked_up, lambda: table[int(rects.index)], rects.fetch)
     present = assign(rects.rect.word, lambda: (looked_up & varying) | same)
 
     return instances()

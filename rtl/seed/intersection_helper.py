@@ -6,7 +6,7 @@ from myhdl import always, always_comb, block, instances
 from raycaster.configuration import Configuration
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, unsigned
-from raycaster.hdl.verbs import assign, minus, plus
+from raycaster.hdl.verbs import assign, minus, plus, register
 from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.widths import SLOPE_BITS, position_bits, product_bits
 from raycaster.rtl.seed.divider import divider
@@ -84,9 +84,7 @@ def intersection_helper(
         if steps.store_quotient:
             stored.word.next = loaded.word
 
-    @always(clk.posedge)
-    def multiply():
-        product.next = started_b * started.distance
+    multiply = register(clk, product, lambda: started_b * started.distance)
 
     # If the quotient overflows, the point is outside the world.
     @always_comb

@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.common.records import Rect
 from raycaster.rtl.engine.ray_sequencer import ends_early, ray_sequencer
@@ -66,9 +66,7 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
 
     if ends_early(config):
         # The combined flag of all units is registered here; see ray_sequencer.
-        @always(clk.posedge)
-        def register_towards():
-            none_towards.next = not fate.any_towards
+        register_towards = register(clk, none_towards, lambda: not fate.any_towards)
 
         end_early = assign(early_out, lambda: in_flight[load_at] and none_towards)
 

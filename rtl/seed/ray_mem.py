@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The register of the reflected ray."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always_comb, block, instances
 
 from raycaster.hdl.signals import bit
+from raycaster.hdl.verbs import register
 
 
 @block
@@ -29,9 +30,6 @@ def ray_mem(clk, steps, found_axis, found_point, ray, reflected):
 
     left = reflected.joined(x=found_point.x, y=found_point.y, z=found_point.z, dx=dx, dy=dy, dz=dz)
 
-    @always(clk.posedge)
-    def store():
-        if steps.store_ray:
-            reflected.word.next = left
+    store = register(clk, reflected.word, lambda: left, steps.store_ray)
 
     return instances()

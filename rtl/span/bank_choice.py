@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """A stage between the banks of a memory for runs and its output."""
 
-from myhdl import always, block, instances
+from myhdl import block, instances
+
+from raycaster.hdl.verbs import register
 
 
 @block
@@ -16,8 +18,6 @@ def bank_choice(clk, run_0, run_1, run_2, run_3, run):
         run: unsigned output; the run, a cycle later.
     """
 
-    @always(clk.posedge)
-    def choose():
-        run.next = run_0 | run_1 | run_2 | run_3
+    choose = register(clk, run, lambda: run_0 | run_1 | run_2 | run_3)
 
     return instances()

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The chains whose spans are being drawn in their mirrors."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bits_for, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.widths import level_bits
 
 
@@ -25,11 +25,7 @@ def chain_stack(clk, push, level, kept, frame, config: Configuration):
     width = bits_for(config.most_reflections)
 
     if config.most_reflections == 1:
-
-        @always(clk.posedge)
-        def store():
-            if push:
-                frame.word.next = kept.word
+        store = register(clk, frame.word, lambda: kept.word, push)
 
     else:
         memory = [unsigned(len(kept.word)) for _ in range(1 << width)]
@@ -43,11 +39,7 @@ def chain_stack(clk, push, level, kept, frame, config: Configuration):
             above.next = level[width:]
             below.next = lower[width:]
 
-        @always(clk.posedge)
-        def store():
-            if push:
-                memory[above].next = kept.word
-
+        store = register(clk, memory[above], lambda: kept.word, push)
         show = assign(frame.word, lambda: memory[below])
 
     return instances()

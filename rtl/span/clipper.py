@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, bits_for, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.widths import column_bits
 from raycaster.rtl.span.first_change import division_cycles
 from raycaster.rtl.span.line_eval import LATENCY
@@ -111,10 +111,7 @@ def clipper(clk, reset, chain, opened, met, asks, answer, append, entry, idle, c
             elif (not rises) and (border < high):
                 stop.next = border
 
-    @always(clk.posedge)
-    def keep():
-        if opened:
-            entries[put].next = met.word
+    keep = register(clk, entries[put], lambda: met.word, opened)
 
     @always(clk.posedge)
     def count_entries():
@@ -130,9 +127,7 @@ def clipper(clk, reset, chain, opened, met, asks, answer, append, entry, idle, c
     see_idle = assign(idle, lambda: put == taken)
 
     # Nothing ends in the cycles after an opening and after an end, as a rectangle has several lines.
-    @always(clk.posedge)
-    def look_up():
-        oldest.word.next = entries[taken]
+    look_up = register(clk, oldest.word, lambda: entries[taken])
 
     found = entry.joined(
         index=oldest.index, axis=oldest.axis, back=oldest.back, distance=oldest.distance, start=start, stop=stop

@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import unsigned
+from raycaster.hdl.verbs import register
 from raycaster.rtl.common.widths import index_bits, level_bits
 
 
@@ -59,10 +60,7 @@ def entry_table(clk, level, shadows, append, number, entry, read, place, stored,
             write_address.next = number[index_width:]
             read_address.next = place
 
-    @always(clk.posedge)
-    def store():
-        if append:
-            memory[write_address].next = entry.word
+    store = register(clk, memory[write_address], lambda: entry.word, append)
 
     @always(clk.posedge)
     def fetch():

@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bits_for, unconnected, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.widths import divisor_bits, line_bits
 from raycaster.rtl.span.division_stage import division_stage
@@ -80,9 +80,6 @@ def first_change(clk, reset, start, division, columns, done, config: Configurati
             under_way.next = concat(under_way[cycles - 1 :], start)
 
     see_end = assign(done, lambda: under_way[cycles - 1])
-
-    @always(clk.posedge)
-    def show():
-        columns.next = (quotient + 1) % (1 << len(columns))
+    show = register(clk, columns, lambda: (quotient + 1) % (1 << len(columns)))
 
     return instances()

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Everything between the units and the monitor: two lists of runs, each a whole frame."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always_comb, block, instances
 
 from raycaster.hdl.signals import bit, bits_for, side_by_side, tied, unconnected, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.span.frame_switch import frame_switch
 from raycaster.rtl.span.list_player import list_player
 from raycaster.rtl.span.lists import ListEntry, entry_bits
@@ -77,10 +77,7 @@ def frame_list(
     )  # fmt: skip
 
     drop = assign(dropped, lambda: reset or abandoned)
-
-    @always(clk.posedge)
-    def stop_units():
-        stop.next = abandoned and not reset
+    stop_units = register(clk, stop, lambda: abandoned and not reset)
 
     if units == 1:
 

@@ -4,7 +4,7 @@
 from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.hdl.signals import bit, bits_for, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 
 
 def slots_for(latency: int) -> int:
@@ -82,10 +82,7 @@ def read_ahead(
             elif take and not arrives:
                 filled_slots.next = filled_slots - 1
 
-    @always(clk.posedge)
-    def fill():
-        if arrives:
-            slots[put_slot].next = shown.word
+    fill = register(clk, slots[put_slot], lambda: shown.word, arrives)
 
     @always(clk.posedge)
     def circle():

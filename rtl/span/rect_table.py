@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """A unit's own copy of the live rectangles."""
 
-from myhdl import always, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import unsigned
+from raycaster.hdl.verbs import register
 
 
 @block
@@ -19,14 +20,7 @@ def rect_table(clk, store, number, rect, walk, config: Configuration):
     """
     words = [unsigned(len(rect.word)) for _ in range(config.rectangles)]
 
-    @always(clk.posedge)
-    def keep():
-        if store:
-            words[number].next = rect.word
-
-    @always(clk.posedge)
-    def present():
-        if walk.fetch:
-            walk.rect.word.next = words[walk.index]
+    keep = register(clk, words[number], lambda: rect.word, store)
+    present = register(clk, walk.rect.word, lambda: words[walk.index], walk.fetch)
 
     return instances()

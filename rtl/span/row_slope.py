@@ -5,7 +5,7 @@ from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit
-from raycaster.hdl.verbs import minus
+from raycaster.hdl.verbs import minus, register
 from raycaster.rtl.common.widths import span_slope_bits
 from raycaster.rtl.span.slope_start import slope_start
 
@@ -43,9 +43,7 @@ def row_slope(clk, first_row, next_row, camera, slope, config: Configuration):
         begins = bit()
         below, go_down = minus(slope.z, 1, Signed(bits + 1))
 
-        @always(clk.posedge)
-        def follow():
-            begins.next = first_row
+        follow = register(clk, begins, lambda: first_row)
 
         @always(clk.posedge)
         def step():

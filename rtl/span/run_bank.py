@@ -4,6 +4,7 @@
 from myhdl import always, block, instances
 
 from raycaster.hdl.signals import Unset, bit, unsigned
+from raycaster.hdl.verbs import register
 
 
 @block
@@ -23,10 +24,7 @@ def run_bank(clk, write, write_place, written, read, read_place, shown, places: 
     memory = Unset(places, len(written))
     fetched, reads = unsigned(len(written)), bit()
 
-    @always(clk.posedge)
-    def store():
-        if write:
-            memory[write_place].next = written
+    store = register(clk, memory[write_place], lambda: written, write)
 
     @always(clk.posedge)
     def fetch():

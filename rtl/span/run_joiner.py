@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.widths import RGB_BITS, column_bits
 
 
@@ -69,8 +69,6 @@ def run_joiner(clk, reset, part, run, done, config: Configuration):
             run.end.next = held_end
             run.colour.next = colour
 
-    @always(clk.posedge)
-    def finish():
-        done.next = run.valid and run.ready and (run.end == columns) and not reset
+    finish = register(clk, done, lambda: run.valid and run.ready and (run.end == columns) and not reset)
 
     return instances()

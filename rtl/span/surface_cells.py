@@ -5,7 +5,7 @@ from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, tied, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.by_axis import along_u, along_v, by_axis
 from raycaster.rtl.common.widths import column_bits, eye_bits, level_bits
 from raycaster.rtl.span.cell_walker import cell_walker
@@ -83,10 +83,7 @@ def surface_cells(
         next_v=found_next,
     )  # fmt: skip
 
-    @always(clk.posedge)
-    def keep_grid():
-        if paint:
-            grids[level].next = given
+    keep_grid = register(clk, grids[level], lambda: given, paint)
 
     @always(clk.posedge)
     def keep_cells():

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The surfaces that rays see on their way, as they were painted."""
 
-from myhdl import always, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.widths import level_bits
 
 
@@ -22,11 +22,7 @@ def surface_table(clk, paint, level, given, seen, shown, config: Configuration):
     """
     memory = [unsigned(len(given.word)) for _ in range(1 << level_bits(config))]
 
-    @always(clk.posedge)
-    def keep():
-        if paint:
-            memory[level].next = given.word
-
+    keep = register(clk, memory[level], lambda: given.word, paint)
     show = assign(shown.word, lambda: memory[seen])
 
     return instances()

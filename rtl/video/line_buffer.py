@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """A section of the double line buffer: the pixels of one ray unit."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bits_for, unsigned
+from raycaster.hdl.verbs import register
 from raycaster.rtl.common.widths import pixel_bits
 
 
@@ -37,13 +38,7 @@ def line_buffer(clk, write, line_buf_sel, write_offset, pixel_in, read_offset, p
         else:
             read_address.next = (read_offset + groups) % (1 << address_width)
 
-    @always(clk.posedge)
-    def store():
-        if write:
-            memory[write_address].next = pixel_in
-
-    @always(clk.posedge)
-    def fetch():
-        pixel_out.next = memory[read_address]
+    store = register(clk, memory[write_address], lambda: pixel_in, write)
+    fetch = register(clk, pixel_out, lambda: memory[read_address])
 
     return instances()

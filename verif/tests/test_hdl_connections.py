@@ -12,7 +12,7 @@ from raycaster.hdl.internals import bits_of
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import assign, less, minus, plus, times
+from raycaster.hdl.verbs import assign, less, minus, plus, register, times
 from raycaster.sim.simulator import find_tool
 
 
@@ -143,6 +143,40 @@ def test_verbs(tmp_path, random):
         "behind = is_less", "product = tripled",
     ]  # fmt: skip
     assert "\n// The result of two lines.\nassign behind = is_less;\n\nassign product" in text
+
+
+@block
+def with_registers(clk, place, word, write, shown, count):
+    """Write a memory on request, and read it and count in each cycle."""
+    memory = [unsigned(4) for _ in range(4)]
+    total = unsigned(4)
+    # Before the memory.
+    keep = register(clk, memory[place], lambda: word, write)
+    fetch = register(clk, shown, lambda: memory[place])
+    counting = register(clk, total, lambda: (total + 1) % 16, write)
+    show = assign(count, lambda: total)
+    return keep, fetch, counting, show
+
+
+def test_registers(tmp_path, random):
+    widths = {"place": 2, "word": 4, "shown": 4, "count": 4}
+    leaf = Leaf(
+        with_registers,
+        lambda: {"clk": bit(), "write": bit()} | {name: unsigned(bits) for name, bits in widths.items()},
+        tmp_path,
+    )
+    stimulus = random_inputs(leaf, random, 50)
+    memory, shown, count = [0] * 4, 0, 0
+    for inputs, outputs in zip(stimulus, leaf.run_both(stimulus), strict=True):
+        assert outputs == {"shown": shown, "count": count}
+        shown = memory[inputs["place"]]
+        if inputs["write"]:
+            memory[inputs["place"]], count = inputs["word"], (count + 1) % 16
+    text = (tmp_path / "with_registers.v").read_text()
+    assert (
+        "// Before the memory.\nalways @(posedge clk) begin\n    if (write) begin\n        memory[place] <= word;"
+        in text
+    )
 
 
 def test_a_line_has_one_lambda():
