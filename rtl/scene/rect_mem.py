@@ -40,10 +40,10 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     address_width = len(bus.address)
     index_width = index_bits(config)
 
-    slot, next_slot = signed(address_width - 1), signed(address_width - 1)
-    index = Signal(intbv(0, min=0, max=count))
+    slot = signed(address_width - 1)
+    index, chosen = (Signal(intbv(0, min=0, max=count)) for _ in range(2))
     next_index = unsigned(index_width)
-    in_table, write, repeats, again = (bit() for _ in range(4))
+    found, in_table, write, repeats, again = (bit() for _ in range(5))
     written = unsigned(count)
     stored, old, mask, data, merged = (written_of(config) for _ in range(5))
     implemented = tied(implemented_bits(config), len(merged.word))
@@ -77,23 +77,25 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     sorter = rect_sorter(latest, sorted_rect, config)
 
     # The table starts after the other registers.
-    locate = assign(slot, lambda: bus.address[address_width:2] - table_slot)
+    locate = assign(slot, lambda: bus.next_address[address_width:2] - table_slot)
+    find_next = assign(next_index, lambda: slot[index_width:])
 
     # Outside the table index is 0, so that it stays within the memories.
     @always_comb
     def clip():
-        in_table.next = (slot >= 0) and (slot < count)
-        index.next = 0
+        found.next = (slot >= 0) and (slot < count)
+        chosen.next = 0
         if (slot >= 0) and (slot < count):
-            index.next = slot[index_width:]
+            chosen.next = slot[index_width:]
+
+    # Both are those of bus.address, as this changes with an access only. A write never comes before the first access.
+    @always(clk.posedge)
+    def follow_address():
+        if bus.access:
+            in_table.next = found
+            index.next = chosen
 
     decode = assign(write, lambda: bus.write and in_table)
-
-    @always_comb
-    def find_next():
-        next_slot.next = bus.next_address[address_width:2] - table_slot
-        next_index.next = next_slot[index_width:]
-
     see_repetition = assign(repeats, lambda: write and next_index == index)
 
     # A word that is being written is not read, in either memory, as block RAM would need logic for that: the words of

@@ -265,6 +265,10 @@ always @* if (known) begin
     assert (bus_write == wrote && registers.reading == $past(reads));
     if (wrote) assert (bus_address == wrote_address && bus_mask == wrote_mask && (bus_data & bus_mask) == wrote_ones);
     if ($past(reads)) assert (watched_1 == (bus_address == watched));
+    if (bus_write || registers.reading) begin
+        assert (rects.in_table == (bus_address >= TABLE && bus_address < TABLE + 8));
+        if (rects.in_table) assert (rects.index == bus_address[2]);
+    end
     assert (!(wrote && $past(reads)));
     assert (registers.frame == frame);
     assert (registers.slowest_row == slowest_row && registers.slowest_group == slowest_group);
