@@ -31,7 +31,7 @@ def read_ahead(
         take: strobe; head is replaced by the next run. Only while offered.
         fetch: output strobe; a run is fetched, and will be offered.
         read_place: unsigned, like first; output register. It follows each fetch by one place; place 0 follows the last.
-        offered: output flag; head is a run.
+        offered: output flag, a register; head is a run.
         head: `ListEntry`; output, valid while offered and constant until take or restart.
         places: number of places.
         latency: cycles from a place to its run, at least two.
@@ -72,6 +72,7 @@ def read_ahead(
         if restart:
             taken_slots.next = 0
             filled_slots.next = 0
+            offered.next = False
         else:
             if fetch and not take:
                 taken_slots.next = taken_slots + 1
@@ -81,6 +82,10 @@ def read_ahead(
                 filled_slots.next = filled_slots + 1
             elif take and not arrives:
                 filled_slots.next = filled_slots - 1
+            if arrives:
+                offered.next = True
+            elif take:
+                offered.next = filled_slots != 1
 
     fill = register(clk, slots[put_slot], lambda: shown.word, arrives)
 
@@ -96,8 +101,7 @@ def read_ahead(
                 head_slot.next = (head_slot + 1) % slot_count
 
     @always_comb
-    def offer():
-        offered.next = filled_slots != 0
+    def show_head():
         head.word.next = slots[head_slot]
 
     return instances()

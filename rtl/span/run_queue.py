@@ -25,8 +25,8 @@ def run_queue(
         take: strobe; head is replaced by the next run. Only while offered.
         ready: output flag, a register; the queue is not full.
         room: output flag, a register; there is room for all runs that a row can have.
-        offered: output flag; head is a run, at the earliest two cycles and `read_latency` after it was taken from the
-            unit.
+        offered: output flag, a register; head is a run, at the earliest two cycles and `read_latency` after it was
+            taken from the unit.
         head: `ListEntry`; output, the oldest run, valid while offered and constant until take.
         columns: columns of a row, its most runs.
         places: runs that fit, besides those that are read ahead; at least columns.

@@ -81,6 +81,7 @@ always @* if (known) begin
     assert (dut.unread <= PLACES && in_slots <= SLOTS && ahead <= SLOTS && all == ahead + dut.unread);
     assert (ahead == in_slots + on_the_way[0] + on_the_way[1] && dut.run_memory_i.run_bank_i.reads);
     assert (read_place < PLACES && write_place == (next_place >= PLACES ? next_place - PLACES : next_place));
+    assert (offered == (in_slots != 0));
     assert (put_slot == dut.read_ahead_i.head_slot + in_slots[1:0]);
     assert (row_left <= COLUMNS && dut.unread + row_left <= PLACES);
     if (picked) begin
