@@ -37,7 +37,6 @@ from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import OpenBoard, board_names, find_board
 from raycaster.fpga.flows import (
     FLOWS,
-    OTHER_MEMORIES,
     Clocks,
     Flow,
     clocks_for,
@@ -350,7 +349,7 @@ def with_list(board: OpenBoard, design: AnyDesign, options: Mapping[str, Any]) -
     if not isinstance(design, ProcessorDesign):
         words = longest_frame(config) if BUSES[config.bus].serial else 0
     program = -(-words // places) * -(-WORD_BITS // width)
-    most = largest_list(board, config, OTHER_MEMORIES + program)
+    most = largest_list(board, config, program)
     if config.list > most and (larger := list_in_single_ports(board, config)):
         if "list" not in options or config.list <= larger:
             return replace(design, configuration=replace(config, list=larger))

@@ -68,6 +68,7 @@ class Flow:
             has both.
         factor_bits: width of a multiplier's factors.
         block: places of a RAM block and their width, in a shape that Yosys takes for large memories.
+        others: RAM blocks of a design besides its lists and queues: the scene's, with all features.
         single_port: places and width of a larger RAM with a single port; None if the family has none.
         tells_crossings: True if nextpnr reports paths from one clock to another.
         pll: returns the PLL's parameters for an input frequency and an output frequency in MHz, with `per_clk` output
@@ -86,6 +87,7 @@ class Flow:
     cells: tuple[str, str, str, str]
     factor_bits: int
     block: tuple[int, int]
+    others: int
     single_port: tuple[int, int] | None
     tells_crossings: bool
     pll: Callable[[float, float, float], Pll | None]
@@ -118,10 +120,6 @@ def clocks_for(board: OpenBoard, config: Configuration) -> Clocks:
     return Clocks(found[0], {SYSTEM_CLOCK: made} | ({SHIFT_CLOCK: found[1]} if board.video == "dvi" else {}))
 
 
-OTHER_MEMORIES = 4
-"""RAM blocks of a design besides its lists and queues: the scene's, with all features."""
-
-
 def list_in_single_ports(board: OpenBoard, config: Configuration) -> int:
     """Return the entries of lists that fill RAMs with a single port; 0 if a board's chip has too few of them."""
     single_port = FLOWS[board.flow].single_port
@@ -132,19 +130,20 @@ def list_in_single_ports(board: OpenBoard, config: Configuration) -> int:
     return places if 2 * across <= board.single_ports else 0
 
 
-def largest_list(board: OpenBoard, config: Configuration, others: int = OTHER_MEMORIES) -> int:
+def largest_list(board: OpenBoard, config: Configuration, more: int = 0) -> int:
     """Return the entries of the largest lists for which a board's chip has RAM blocks; 0 if there are none.
 
     Args:
         board: target board.
         config: the design, which draws whole frames.
-        others: RAM blocks that something else needs.
+        more: RAM blocks that a processor's program or a serial bridge needs.
     """
     columns = config.screen_geometry.columns
-    places, width = FLOWS[board.flow].block
+    flow = FLOWS[board.flow]
+    places, width = flow.block
     across = -(-(end_bits(columns) + pixel_bits(config)) // width)
     queues = config.units * -(-2 * columns // places) * across if config.units > 1 else 0
-    return max(0, (board.memories - others - queues) // across) * places // 2
+    return max(0, (board.memories - flow.others - more - queues) // across) * places // 2
 
 
 def _lpf(board: OpenBoard) -> str:
@@ -321,6 +320,7 @@ FLOWS: Mapping[str, Flow] = {
         cells=("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD"),
         factor_bits=18,
         block=(2048, 9),
+        others=4,
         single_port=None,
         tells_crossings=True,
         pll=_ecp5_pll,
@@ -338,6 +338,7 @@ FLOWS: Mapping[str, Flow] = {
         cells=("ICESTORM_LC", "ICESTORM_LC", "ICESTORM_DSP", "ICESTORM_RAM"),
         factor_bits=16,
         block=(512, 8),
+        others=16,
         single_port=(LARGE_BANK, 16),
         tells_crossings=False,
         pll=_ice40_pll,
@@ -356,6 +357,7 @@ FLOWS: Mapping[str, Flow] = {
         cells=("LUT4", "DFF", "MULT18X18", "BSRAM"),
         factor_bits=18,
         block=(2048, 9),
+        others=4,
         single_port=None,
         tells_crossings=False,
         pll=_gowin_pll,

@@ -128,10 +128,11 @@ def test_lists_fill_single_ports():
     """A list that needs more block RAM than the chip has fills two RAMs with a single port, of 16,384 x 16 bits.
 
     A run has 9 bits for a column of 320 and 12 of colour, so three blocks of 512 x 8 bits side by side hold 512 runs.
+    The scene needs 16 of the 30 blocks.
     """
     board = find_board("icebreaker", OpenBoard)
     config = configure(engine="span", scale=1, colour_bits=4)
-    whole, most = Design(SMALL_SCENE, load_scene(SMALL_SCENE), config, 1), 8 * 512 // 2
+    whole, most = Design(SMALL_SCENE, load_scene(SMALL_SCENE), config, 1), 4 * 512 // 2
     for asked, made in ((most, most), (most + 2, 16384), (16384, 16384), (None, 16384)):
         given = {} if asked is None else {"list": asked}
         design = replace(whole, configuration=replace(config, **given))
@@ -142,9 +143,9 @@ def test_lists_fill_single_ports():
 
 def test_a_scene_with_too_many_runs_is_refused():
     """Its frame would never be whole; nothing is converted."""
-    options = {"board": "icebreaker", "engine": "span", "rows": 240, "scale": 1, "list": 2048}
+    options = {"board": "icebreaker", "engine": "span", "rows": 240, "scale": 1, "list": 1024}
     words = ["mirror_room", *(word for name, value in options.items() for word in (f"--{name}", str(value)))]
-    with pytest.raises(UserError, match=r"mirror_room\.toml: a frame has 2,495 runs of .* holds 2,048;"):
+    with pytest.raises(UserError, match=r"mirror_room\.toml: a frame has 2,495 runs of .* holds 1,024;"):
         bitstream.main(words)
 
 
