@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster area`: count a design's cells for three families of chips, with Yosys.
+"""`raycaster area`: count a design's cells for three families of chips, with Yosys, or route it alone.
 
 Totals are for the flattened design. Counts by module keep the hierarchy, which prevents some sharing between modules.
 """
@@ -7,6 +7,7 @@ Totals are for the flattened design. Counts by module keep the hierarchy, which 
 from __future__ import annotations
 
 import argparse
+import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from functools import partial
@@ -16,19 +17,25 @@ from typing import Any
 from raycaster.configuration import FEATURES, MOST_RECTANGLES, MOST_REFLECTIONS, Configuration
 from raycaster.convert.digest import verilog_digest
 from raycaster.convert.take_home import TOP
+from raycaster.convert.write import write_verilog
 from raycaster.design.decide import configure
 from raycaster.design.options import CommandParser, add_configuration_options, add_scene_argument, given_options
-from raycaster.errors import UserError
+from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.fpga.board import OpenBoard, QuartusBoard, board_names, find_board
 from raycaster.fpga.cells import FAMILIES, Area, Family, measure, measure_modules
+from raycaster.fpga.flows import ECP5_EFFORT, FLOWS, place_and_route
+from raycaster.fpga.netlist import write_netlist
 from raycaster.output import Console, Table
 from raycaster.rtl.engines import ENGINES, SPAN
 from raycaster.runs.jobs import run_jobs, threads
 from raycaster.runs.outcomes import add_keep_option, keep
+from raycaster.runs.tools import find_program, prepare_wasm
 from raycaster.runs.waits import announce
 
 JOBS = 2
+ROUTED, SPARE = "ulx3s", 1.03
+"""Board with the chip on which `--route` places a module, and its clock relative to the one that the screen needs."""
 
 
 _LOOKS = {"turn": 1, "materials": 1, "patterns": 1, "reflections": 2}
@@ -115,6 +122,60 @@ def show_chips(areas: Mapping[str, Area], console: Console) -> None:
     console.print(table)
 
 
+def route(config: Configuration, seed: int, directory: Path) -> dict[str, Any]:
+    """Place and route the module alone, on an LFE5U-85F-6, with a pad at each port.
+
+    Args:
+        config: configuration of the design.
+        seed: seed of the placement.
+        directory: directory, which is replaced; keeps the netlist and nextpnr's reports.
+
+    Returns:
+        Figures: the used and available cells by kind, the reached and the aimed at frequency in MHz, and the worst
+        path's steps, each with its delay in ns and the net or the cell that it goes through.
+
+    Raises:
+        UserError: a program is missing, or failed.
+    """
+    board = find_board(ROUTED, OpenBoard)
+    flow = FLOWS[board.flow]
+    program = find_program(flow.programs[0])
+    if program is None:
+        raise UserError(not_installed(flow.programs[0], "fpga"))
+    prepare_wasm(program)
+    sources = [Path(path.name) for path in write_verilog(config, directory) if path.suffix == ".v"]
+    netlist = write_netlist(flow, sources, TOP, board.multipliers, directory)
+    aim = round(config.screen_geometry.clock_hz / 1e6 * SPARE, 2)
+    command = [flow.programs[0], *board.options, "--json", netlist.name, "--lpf-allow-unconstrained", *ECP5_EFFORT]
+    done = place_and_route([*command, "--freq", str(aim), "--seed", str(seed)], flow.again, directory)
+    if done.returncode:
+        raise UserError(f"{done.args[0]}: it failed; the log is {directory / 'nextpnr.log'}")
+    return {"seed": seed, **_routed(json.loads((directory / "report.json").read_text()), flow.cells, aim)}
+
+
+def _routed(report: Mapping[str, Any], kinds: Sequence[str], aim: float) -> dict[str, Any]:
+    """Return the figures of nextpnr's report on a design with one clock."""
+    [clock] = report["fmax"].values()
+    [path] = [one["path"] for one in report["critical_paths"] if "async" not in one["from"] + one["to"]]
+    cells = [[report["utilization"][kind][key] for key in ("used", "available")] for kind in kinds]
+    steps = [[round(step["delay"], 2), step["net"] if "net" in step else step["to"]["cell"]] for step in path]
+    names = "logic", "registers", "multipliers", "memories"
+    return {"cells": dict(zip(names, cells, strict=True)), "clock": [round(clock["achieved"], 2), aim], "path": steps}
+
+
+def show_route(figures: Mapping[str, Any], console: Console) -> None:
+    """Print the cells, the clock and the worst path of a routed module."""
+    table = Table("cell", "used", "available", title=f"{find_board(ROUTED, OpenBoard).chip}, seed {figures['seed']}")
+    for kind, (used, available) in figures["cells"].items():
+        table.add_row(kind, used, available)
+    console.print(table)
+    table = Table("ns", "through", title="worst path")
+    for delay, name in figures["path"]:
+        table.add_row(f"{delay:.2f}", name)
+    console.print(table)
+    console.print("clock: {:.2f} of {:g} MHz".format(*figures["clock"]))
+
+
 def command_parser() -> CommandParser:
     """Build the parser of the command line."""
     parser = CommandParser("area", __doc__, "--engine exact --family ecp5")
@@ -122,6 +183,8 @@ def command_parser() -> CommandParser:
     parser.add_argument(
         "--features", action="store_true", help="count the cells of each engine's features, such as TURN"
     )
+    parser.add_argument("--route", action="store_true", help="place and route the module alone, on an ECP5-85F")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the placement (default: %(default)s)")
     parser.add_argument("--output", type=Path, default=Path("build/area"), help="output directory (%(default)s)")
     add_scene_argument(parser, "scene to build in with --fix")
     add_fix_option(parser)
@@ -144,16 +207,23 @@ def main(argv: Sequence[str] | None = None) -> None:
     arguments = command_parser().parse_args(argv)
     if arguments.family and arguments.family not in FAMILIES:
         raise UserError(f"family: expected one of {', '.join(FAMILIES)}, got {arguments.family}")
+    if arguments.route and arguments.family not in (None, "ecp5"):
+        raise UserError("route: places a module on an ECP5 only; leave out --family")
     console = Console()
     if arguments.features:
-        if any((arguments.scene, arguments.fix, arguments.family, given_options(arguments))):
+        if any((arguments.scene, arguments.fix, arguments.family, arguments.route, given_options(arguments))):
             raise UserError("features: counts a fixed set of designs, for the ECP5; leave everything else out")
         announce("area")
         figures = {"designs": measure_features(arguments.output, console)}
         keep(arguments, figures, verilog, left_out="placing and routing")
         return
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, console)
-    announce("area")
+    announce("area --route" if arguments.route else "area")
+    if arguments.route:
+        figures = {"configuration": config.name, **route(config, arguments.seed, arguments.output / config.name)}
+        show_route(figures, console)
+        keep(arguments, figures, verilog, left_out="pins, and the paths to and from them")
+        return
     families = [FAMILIES[arguments.family]] if arguments.family else list(FAMILIES.values())
     tasks: dict[str, Callable[[Path], Any]] = {}
     for family in families:

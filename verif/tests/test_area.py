@@ -13,6 +13,7 @@ from conftest import called
 
 from raycaster.convert.take_home import TOP
 from raycaster.design.decide import configure
+from raycaster.errors import UserError
 from raycaster.fpga import area, flows
 from raycaster.fpga.board import Board, QuartusBoard, board_names, find_board
 from raycaster.fpga.cells import FAMILIES, Area, measure, measure_modules
@@ -132,6 +133,44 @@ def test_a_missed_clock_is_routed_again(reached, code, kept, runs, tmp_path, mon
     logs = [("--again" in command, command[-1]) for command, _ in made]
     assert logs == [(False, "nextpnr.log"), (True, "again.log")][:runs]
     assert made[-1][1] == (flows.LONGEST, flows.LEAST_AGAIN)[runs - 1]
+
+
+def test_a_module_is_routed_alone(tmp_path, monkeypatch, capsys):
+    """nextpnr's report on paths between registers is printed and kept; paths from and to pads are left out."""
+    used = {"TRELLIS_COMB": 9, "TRELLIS_FF": 8, "MULT18X18D": 4, "DP16KD": 2}
+    path = [
+        {"delay": 0.52, "to": {"cell": "count", "port": "Q"}},
+        {"delay": 1.234, "net": "rect_mem_i.index", "to": {"cell": "LUT", "port": "A"}},
+    ]
+    clocks = [("<async>", "posedge $glbnet$clk"), ("posedge $glbnet$clk",) * 2]
+    report = {
+        "fmax": {"$glbnet$clk": {"achieved": 77.007, "constraint": 51.5}},
+        "utilization": {name: {"used": count, "available": 10} for name, count in used.items()},
+        "critical_paths": [{"from": one, "to": other, "path": path} for one, other in clocks],
+    }
+    commands = []
+
+    def run_nextpnr(command, again, directory):
+        commands.append((command, again))
+        (directory / "report.json").write_text(json.dumps(report))
+        return subprocess.CompletedProcess(command, 0, "", "")
+
+    monkeypatch.setattr(area, "place_and_route", run_nextpnr)
+    monkeypatch.setattr(area, "write_netlist", lambda flow, sources, top, multipliers, work: work / f"{top}.json")
+    kept = tmp_path / "routed.json"
+    options = ("--route", "--seed", "3", "--engine", "exact", "--output", str(tmp_path / "area"), "--keep", str(kept))
+    area.main(options)
+    [(command, again)] = commands
+    assert again == flows.ECP5_AGAIN
+    assert {"--85k", f"{TOP}.json"} <= {*command}
+    assert [command[command.index(name) + 1] for name in ("--freq", "--seed")] == ["51.5", "3"]
+    figures = json.loads(kept.read_text())["figures"]
+    assert figures["cells"] == {"logic": [9, 10], "registers": [8, 10], "multipliers": [4, 10], "memories": [2, 10]}
+    assert figures["clock"] == [77.01, 51.5]
+    assert figures["path"] == [[0.52, "count"], [1.23, "rect_mem_i.index"]]
+    assert "77.01 of 51.5 MHz" in capsys.readouterr().out
+    with pytest.raises(UserError, match="route: places a module on an ECP5"):
+        area.main(["--route", "--family", "cyclonev"])
 
 
 @pytest.mark.slow
