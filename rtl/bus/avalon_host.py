@@ -4,6 +4,7 @@
 from myhdl import always_comb, always_seq, block, instances
 
 from raycaster.hdl.signals import bit
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import LANES
 
 
@@ -30,15 +31,11 @@ def avalon_host(clk, reset, access, strobe, address, data, avm_m0):
         writing.next = access.select and (strobe != 0)
 
     # A write or read is requested until it is accepted; a read then waits for its answer.
-    @always_comb
-    def request():
-        avm_m0.read.next = reading and not waiting
-        avm_m0.write.next = writing
-        avm_m0.address.next = address
-        avm_m0.writedata.next = data
-        avm_m0.byteenable.next = every_lane
-        if writing:
-            avm_m0.byteenable.next = strobe
+    request_read = assign(avm_m0.read, lambda: reading and not waiting)
+    request_write = assign(avm_m0.write, lambda: writing)
+    request_address = assign(avm_m0.address, lambda: address)
+    request_writedata = assign(avm_m0.writedata, lambda: data)
+    request_byteenable = assign(avm_m0.byteenable, lambda: strobe if writing else every_lane)
 
     # waiting: a read was accepted and is not answered yet.
     @always_seq(clk.posedge, reset=reset)

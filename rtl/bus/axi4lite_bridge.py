@@ -70,16 +70,11 @@ def axi4lite_bridge(clk, reset, s_axi, avm_m0):
         )
 
     choose_read = assign(asking, lambda: s_axi.arvalid and not writing and not reading and not answer_kept)
-
-    @always_comb
-    def request():
-        avm_m0.write.next = writing
-        avm_m0.read.next = asking
-        avm_m0.writedata.next = s_axi.wdata
-        avm_m0.byteenable.next = s_axi.wstrb
-        avm_m0.address.next = s_axi.araddr[:2]
-        if writing:
-            avm_m0.address.next = s_axi.awaddr[:2]
+    request_write = assign(avm_m0.write, lambda: writing)
+    request_read = assign(avm_m0.read, lambda: asking)
+    request_writedata = assign(avm_m0.writedata, lambda: s_axi.wdata)
+    request_byteenable = assign(avm_m0.byteenable, lambda: s_axi.wstrb)
+    request_address = assign(avm_m0.address, lambda: s_axi.awaddr[:2] if writing else s_axi.araddr[:2])
 
     # Address and data are accepted in the cycle after the agent accepted them.
     @always_seq(clk.posedge, reset=reset)

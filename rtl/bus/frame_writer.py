@@ -36,14 +36,9 @@ def frame_writer(clk, reset, start, valid, word, last, ready, sending, data, acc
 
     checker = frame_check(clk, clear=start, add=add, data=plain, state=check)
 
-    @always_comb
-    def see_state():
-        in_words.next = state == WriterState.WORDS
-        in_check.next = state == WriterState.CHECK
-        sending.next = state != WriterState.IDLE
-        if state == WriterState.WORDS:
-            sending.next = valid
-
+    see_in_words = assign(in_words, lambda: state == WriterState.WORDS)
+    see_in_check = assign(in_check, lambda: state == WriterState.CHECK)
+    see_sending = assign(sending, lambda: valid if state == WriterState.WORDS else state != WriterState.IDLE)
     choose_word = assign(source, lambda: word if in_words else check ^ 0xFFFF_FFFF)
 
     @always_comb
@@ -56,12 +51,8 @@ def frame_writer(clk, reset, start, valid, word, last, ready, sending, data, acc
         elif lane == 3:
             plain.next = source[32:24]
 
-    @always_comb
-    def judge():
-        is_flag.next = not in_words and not in_check
-        special.next = plain == FLAG
-        if plain == ESCAPE:
-            special.next = True
+    judge_is_flag = assign(is_flag, lambda: not in_words and not in_check)
+    judge_special = assign(special, lambda: plain in (FLAG, ESCAPE))
 
     @always_comb
     def drive():

@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import plus, times
+from raycaster.hdl.verbs import assign, plus, times
 
 
 @block
@@ -76,18 +76,10 @@ def group_tester(clk, load, facet, growth, start, column_slope, row_slope, may_h
             behind.next = back and end_back
 
     # If the ray runs in the negative direction, multiplying by its slope has swapped the bounds.
-    @always_comb
-    def order_bounds():
-        if back:
-            least_p.next = start.high_p
-            most_p.next = start.low_p
-            least_q.next = start.high_q
-            most_q.next = start.low_q
-        else:
-            least_p.next = start.low_p
-            most_p.next = start.high_p
-            least_q.next = start.low_q
-            most_q.next = start.high_q
+    order_least_p = assign(least_p, lambda: start.high_p if back else start.low_p)
+    order_most_p = assign(most_p, lambda: start.low_p if back else start.high_p)
+    order_least_q = assign(least_q, lambda: start.high_q if back else start.low_q)
+    order_most_q = assign(most_q, lambda: start.low_q if back else start.high_q)
 
     @always_comb
     def compare():
@@ -113,18 +105,10 @@ def group_tester(clk, load, facet, growth, start, column_slope, row_slope, may_h
         high_q_1.next = end_high_q
         way_q_1.next = facet.way_q
 
-    @always_comb
-    def order_end_bounds():
-        if turned_1:
-            end_least_p.next = high_p_1
-            end_most_p.next = low_p_1
-            end_least_q.next = high_q_1
-            end_most_q.next = low_q_1
-        else:
-            end_least_p.next = low_p_1
-            end_most_p.next = high_p_1
-            end_least_q.next = low_q_1
-            end_most_q.next = high_q_1
+    order_end_least_p = assign(end_least_p, lambda: high_p_1 if turned_1 else low_p_1)
+    order_end_most_p = assign(end_most_p, lambda: low_p_1 if turned_1 else high_p_1)
+    order_end_least_q = assign(end_least_q, lambda: high_q_1 if turned_1 else low_q_1)
+    order_end_most_q = assign(end_most_q, lambda: low_q_1 if turned_1 else high_q_1)
 
     # If the rays at both ends pass on the same side, all rays miss.
     @always_comb

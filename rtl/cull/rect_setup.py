@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import minus
+from raycaster.hdl.verbs import assign, minus
 from raycaster.rtl.common.by_axis import along_a, along_p, along_q, by_axis
 from raycaster.rtl.common.widths import AXIS_BITS, DISTANCE_BITS, exact_slope_bits, index_bits
 from raycaster.rtl.engine.array_multiplier import array_multiplier
@@ -107,22 +107,14 @@ def rect_setup(
         )
     ]  # fmt: skip
 
-    @always_comb
-    def extend():
-        plane.next = rects.rect.position
-        eye_a.next = camera_a
-        eye_p.next = camera_p
-        eye_q.next = camera_q
-        if rects.rect.axis == 2:
-            low_p.next = rects.rect.v_low
-            high_p.next = rects.rect.v_high
-            low_q.next = rects.rect.u_low
-            high_q.next = rects.rect.u_high
-        else:
-            low_p.next = rects.rect.u_low
-            high_p.next = rects.rect.u_high
-            low_q.next = rects.rect.v_low
-            high_q.next = rects.rect.v_high
+    extend_plane = assign(plane, lambda: rects.rect.position)
+    extend_eye_a = assign(eye_a, lambda: camera_a)
+    extend_eye_p = assign(eye_p, lambda: camera_p)
+    extend_eye_q = assign(eye_q, lambda: camera_q)
+    extend_low_p = assign(low_p, lambda: rects.rect.v_low if rects.rect.axis == 2 else rects.rect.u_low)
+    extend_high_p = assign(high_p, lambda: rects.rect.v_high if rects.rect.axis == 2 else rects.rect.u_high)
+    extend_low_q = assign(low_q, lambda: rects.rect.u_low if rects.rect.axis == 2 else rects.rect.v_low)
+    extend_high_q = assign(high_q, lambda: rects.rect.u_high if rects.rect.axis == 2 else rects.rect.v_high)
 
     @always(clk.posedge)
     def hold_distances():
@@ -158,19 +150,11 @@ def rect_setup(
     more_way_p, more_low_p, more_high_p, more_low_q, more_high_q = (signed(bound_bits) for _ in range(5))
 
     # A product grows if its slope component is D[y], the one that changes with the column.
-    @always_comb
-    def choose_growth():
-        more_way_p.next = distance_2
-        more_low_p.next = 0
-        more_high_p.next = 0
-        more_low_q.next = 0
-        more_high_q.next = 0
-        if axis_2 == 1:
-            more_way_p.next = 0
-            more_low_p.next = to_low_p_2
-            more_high_p.next = to_high_p_2
-            more_low_q.next = to_low_q_2
-            more_high_q.next = to_high_q_2
+    choose_more_way_p = assign(more_way_p, lambda: 0 if axis_2 == 1 else distance_2)
+    choose_more_low_p = assign(more_low_p, lambda: to_low_p_2 if axis_2 == 1 else 0)
+    choose_more_high_p = assign(more_high_p, lambda: to_high_p_2 if axis_2 == 1 else 0)
+    choose_more_low_q = assign(more_low_q, lambda: to_low_q_2 if axis_2 == 1 else 0)
+    choose_more_high_q = assign(more_high_q, lambda: to_high_q_2 if axis_2 == 1 else 0)
 
     more = growth.joined(way_p=more_way_p, low_p=more_low_p, high_p=more_high_p, low_q=more_low_q, high_q=more_high_q)
 

@@ -45,7 +45,6 @@ def colour_combiner(clk, steps, found, found_colour, found_mirror, picture, miss
     look = assign(ray_colour.word, lambda: found_colour if found and not missed else picture.background)
 
     blended = pixel.joined(red=red, green=green, blue=blue)
-
     join = assign(pixel.word, lambda: blended)
 
     return instances()

@@ -38,14 +38,8 @@ def colour_share(clk, steps, found, found_mirror, share, missed, config: Configu
         some, add_parts = plus(half, quarter, bits)
 
         # A weight that is passed on is a multiple of 4: it has met fewer mirrors than there are reflections.
-        @always_comb
-        def split():
-            half.next = 0
-            quarter.next = 0
-            if found_mirror[1]:
-                half.next = weight >> 1
-            if found_mirror[0]:
-                quarter.next = weight >> 2
+        split_half = assign(half, lambda: weight >> 1 if found_mirror[1] else 0)
+        split_quarter = assign(quarter, lambda: weight >> 2 if found_mirror[0] else 0)
 
         # The last ray passes nothing on: it stores no reflected ray.
         @always_comb

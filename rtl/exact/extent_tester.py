@@ -57,16 +57,9 @@ def extent_tester(
         lower.next = low
         upper.next = high
 
-    @always_comb
-    def complement():
-        near.next = lower
-        far.next = upper
-        flipped_eye.next = eye
-        if back:
-            near.next = ~upper
-            far.next = ~lower
-            flipped_eye.next = ~eye
-
+    complement_near = assign(near, lambda: ~upper if back else lower)
+    complement_far = assign(far, lambda: ~lower if back else upper)
+    complement_flipped_eye = assign(flipped_eye, lambda: ~eye if back else eye)
     look_ahead = assign(ahead, lambda: not to_far[distance_bits])
 
     # passed_1: the near bound is behind the eye.
@@ -80,13 +73,8 @@ def extent_tester(
             on_mirror_1.next = on_mirror
 
     clip = assign(clips, lambda: on_mirror_1 and (passed_1 or (to_near_1 <= mirror_distance)))
-
-    @always_comb
-    def choose_first():
-        first.next = to_near_1
-        behind.next = passed_1 and not clips
-        if clips:
-            first.next = mirror_distance
+    choose_first = assign(first, lambda: mirror_distance if clips else to_near_1)
+    choose_behind = assign(behind, lambda: passed_1 and not clips)
 
     @always(clk.posedge)
     def stage_2():

@@ -99,7 +99,6 @@ def eye_register(
         dz.next = initial_signs.dz != flipped_z
 
     all_signs = signs.joined(dx=dx, dy=dy, dz=dz)
-
     join_signs = assign(signs.word, lambda: all_signs)
 
     return instances()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The ray to test: the unit's own, or the one from the light."""
 
-from myhdl import always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.hdl.signals import bit
 from raycaster.hdl.verbs import assign
@@ -30,25 +30,13 @@ def ray_switch(
     """
     active = bit()
 
-    @always_comb
-    def choose_ray():
-        if from_light:
-            tested_eye.x.next = camera.light_x
-            tested_eye.y.next = camera.light_y
-            tested_eye.z.next = camera.light_z
-            tested_slope.dx.next = shadow_slope.dx
-            tested_slope.dy.next = shadow_slope.dy
-            tested_slope.dz.next = shadow_slope.dz
-            tested_signs.word.next = shadow_signs.word
-        else:
-            tested_eye.x.next = eye.x
-            tested_eye.y.next = eye.y
-            tested_eye.z.next = eye.z
-            tested_slope.dx.next = slope.dx
-            tested_slope.dy.next = slope.dy
-            tested_slope.dz.next = slope.dz
-            tested_signs.word.next = signs.word
-
+    choose_tested_eye_x = assign(tested_eye.x, lambda: camera.light_x if from_light else eye.x)
+    choose_tested_eye_y = assign(tested_eye.y, lambda: camera.light_y if from_light else eye.y)
+    choose_tested_eye_z = assign(tested_eye.z, lambda: camera.light_z if from_light else eye.z)
+    choose_dx = assign(tested_slope.dx, lambda: shadow_slope.dx if from_light else slope.dx)
+    choose_dy = assign(tested_slope.dy, lambda: shadow_slope.dy if from_light else slope.dy)
+    choose_dz = assign(tested_slope.dz, lambda: shadow_slope.dz if from_light else slope.dz)
+    choose_tested_signs = assign(tested_signs.word, lambda: shadow_signs.word if from_light else signs.word)
     judge_mirror = assign(active, lambda: mirror.active and not from_light)
 
     left = tested_mirror.joined(

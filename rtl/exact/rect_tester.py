@@ -97,14 +97,8 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
         mirror_on_z.next = mirror.active and (mirror.axis == 2)
 
     extend = assign(position, lambda: rect.position)
-
-    @always_comb
-    def complement():
-        plane.next = position
-        flipped_eye.next = eye_a
-        if back:
-            plane.next = ~position
-            flipped_eye.next = ~eye_a
+    complement_plane = assign(plane, lambda: ~position if back else position)
+    complement_flipped_eye = assign(flipped_eye, lambda: ~eye_a if back else eye_a)
 
     # The plane is ahead of the eye and not parallel to the ray, and no far bound is behind the eye.
     @always_comb

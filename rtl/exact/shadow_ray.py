@@ -114,7 +114,6 @@ def shadow_ray(
             facing.next = light_a < found_surface.position
 
     all_signs = shadow_signs.joined(dx=dx, dy=dy, dz=dz)
-
     join_signs = assign(shadow_signs.word, lambda: all_signs)
 
     return instances()

@@ -4,6 +4,7 @@
 from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.interfaces import AIM_CYCLES
 
 ShadowState = enum("WAIT", "AIM", "TEST")
@@ -54,12 +55,8 @@ def shadow_sequencer(clk, reset_ray_caster, shadow_pass, any_in_question, aim, f
         aimed.next = cycle[last]
         decided.next = (state == ShadowState.TEST) and not any_in_question
 
-    @always_comb
-    def operate():
-        aim.next = 0
-        if state == ShadowState.AIM:
-            aim.next = cycle
-        from_light.next = state == ShadowState.TEST
+    operate_aim = assign(aim, lambda: cycle if state == ShadowState.AIM else 0)
+    operate_from_light = assign(from_light, lambda: state == ShadowState.TEST)
 
     # The rays continue after the last cycle of AIM or TEST.
     @always_comb

@@ -53,7 +53,6 @@ def turned_generator(
     )  # fmt: skip
 
     all_signs = initial_signs.joined(dx=negative_x, dy=negative_y, dz=negative_z)
-
     join_signs = assign(initial_signs.word, lambda: all_signs)
 
     return instances()

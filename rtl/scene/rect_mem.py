@@ -81,12 +81,8 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     find_next = assign(next_index, lambda: slot[index_width:])
 
     # Outside the table index is 0, so that it stays within the memories.
-    @always_comb
-    def clip():
-        found.next = (slot >= 0) and (slot < count)
-        chosen.next = 0
-        if (slot >= 0) and (slot < count):
-            chosen.next = slot[index_width:]
+    clip_found = assign(found, lambda: (slot >= 0) and (slot < count))
+    clip_chosen = assign(chosen, lambda: slot[index_width:] if (slot >= 0) and (slot < count) else 0)
 
     # Both are those of bus.address, as this changes with an access only. A write never comes before the first access.
     @always(clk.posedge)

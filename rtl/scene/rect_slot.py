@@ -50,7 +50,6 @@ def rect_slot(clk, reset, bus, storing, index, number, bank, enable, flat, copie
             usable.next = pending_usable
 
     whole = copies.joined(shadow=shadow, pending=pending, live=live)
-
     join = assign(copies.word, lambda: whole)
 
     return instances()

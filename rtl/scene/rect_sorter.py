@@ -36,37 +36,18 @@ def rect_sorter(written, rect, config: Configuration):
             position.next = written.y_0
 
     # All three pairs are sorted at the same time: sorting only those of the other two axes would take longer.
-    @always_comb
-    def sort():
-        x_low.next = written.x_0
-        x_high.next = written.x_1
-        if written.x_0 > written.x_1:
-            x_low.next = written.x_1
-            x_high.next = written.x_0
-        y_low.next = written.y_0
-        y_high.next = written.y_1
-        if written.y_0 > written.y_1:
-            y_low.next = written.y_1
-            y_high.next = written.y_0
-        z_low.next = written.z_0
-        z_high.next = written.z_1
-        if written.z_0 > written.z_1:
-            z_low.next = written.z_1
-            z_high.next = written.z_0
+    sort_x_low = assign(x_low, lambda: written.x_1 if written.x_0 > written.x_1 else written.x_0)
+    sort_x_high = assign(x_high, lambda: written.x_0 if written.x_0 > written.x_1 else written.x_1)
+    sort_y_low = assign(y_low, lambda: written.y_1 if written.y_0 > written.y_1 else written.y_0)
+    sort_y_high = assign(y_high, lambda: written.y_0 if written.y_0 > written.y_1 else written.y_1)
+    sort_z_low = assign(z_low, lambda: written.z_1 if written.z_0 > written.z_1 else written.z_0)
+    sort_z_high = assign(z_high, lambda: written.z_0 if written.z_0 > written.z_1 else written.z_1)
 
     # u and v are the other two axes, in the order x, y, z.
-    @always_comb
-    def choose_bounds():
-        u_low.next = x_low
-        u_high.next = x_high
-        v_low.next = z_low
-        v_high.next = z_high
-        if axis == 0:
-            u_low.next = y_low
-            u_high.next = y_high
-        if axis == 2:
-            v_low.next = y_low
-            v_high.next = y_high
+    choose_u_low = assign(u_low, lambda: y_low if axis == 0 else x_low)
+    choose_u_high = assign(u_high, lambda: y_high if axis == 0 else x_high)
+    choose_v_low = assign(v_low, lambda: y_low if axis == 2 else z_low)
+    choose_v_high = assign(v_high, lambda: y_high if axis == 2 else z_high)
 
     if config.materials:
         limit_mirror = assign(mirror, lambda: 4 if written.mirror > 4 else written.mirror)

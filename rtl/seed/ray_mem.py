@@ -29,7 +29,6 @@ def ray_mem(clk, steps, found_axis, found_point, ray, reflected):
         dz.next = ray.dz != (found_axis == 2)
 
     left = reflected.joined(x=found_point.x, y=found_point.y, z=found_point.z, dx=dx, dy=dy, dz=dz)
-
     store = register(clk, reflected.word, lambda: left, steps.store_ray)
 
     return instances()

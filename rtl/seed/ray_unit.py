@@ -81,7 +81,6 @@ def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pix
         start_z.next = camera.z << fraction_bits
 
     primary = ray.joined(x=start_x, y=start_y, z=start_z, dx=initial_signs.dx, dy=initial_signs.dy, dz=initial_signs.dz)
-
     choose_ray = assign(ray.word, lambda: primary if steps.initial_ray else reflected.word)
 
     # Hits after a ray has ended do not count.

@@ -75,15 +75,9 @@ def cell_walker(
         by_axis(grid.axis, *along_v(*axes), axis_v, width=AXIS_BITS),
     )
 
-    @always_comb
-    def choose_axis():
-        axis_w.next = axis_u
-        back_w.next = grid.back_u
-        eye_w.next = grid.eye_u
-        if on_v:
-            axis_w.next = axis_v
-            back_w.next = grid.back_v
-            eye_w.next = grid.eye_v
+    choose_axis_w = assign(axis_w, lambda: axis_v if on_v else axis_u)
+    choose_back_w = assign(back_w, lambda: grid.back_v if on_v else grid.back_u)
+    choose_eye_w = assign(eye_w, lambda: grid.eye_v if on_v else grid.eye_u)
 
     # The edge above the present cell is asked for first, then the one below it.
     choose_edge = assign(number, lambda: present if second else present + 1)
@@ -106,17 +100,10 @@ def cell_walker(
     keep_offset = assign(offset, lambda: difference[factor_bits:].signed())
 
     # While the cell is being found, the second line is e itself.
-    @always_comb
-    def choose_line():
-        axis_1.next = axis_w
-        back_1.next = back_w
-        factor_1.next = to_plane
-        factor_2.next = offset
-        if finding and second:
-            axis_1.next = grid.axis
-            back_1.next = grid.back
-            factor_1.next = 1
-            factor_2.next = 0
+    choose_axis_1 = assign(axis_1, lambda: grid.axis if finding and second else axis_w)
+    choose_back_1 = assign(back_1, lambda: grid.back if finding and second else back_w)
+    choose_factor_1 = assign(factor_1, lambda: 1 if finding and second else to_plane)
+    choose_factor_2 = assign(factor_2, lambda: 0 if finding and second else offset)
 
     @always_comb
     def see_last():
@@ -141,14 +128,10 @@ def cell_walker(
             above_right.next = answer.right
             above_growth.next = answer.growth
 
-    @always_comb
-    def see_direction():
-        decides.next = (state == WalkState.ANSWER) and answer.valid and (answer.number == 1)
-        up.next = above_right >= 0
-        down.next = (above_right < 0) and (answer.right < 0)
-        at_once.next = answer.left < 0
-        if above_right >= 0:
-            at_once.next = above_left >= 0
+    see_decides = assign(decides, lambda: (state == WalkState.ANSWER) and answer.valid and (answer.number == 1))
+    see_up = assign(up, lambda: above_right >= 0)
+    see_down = assign(down, lambda: (above_right < 0) and (answer.right < 0))
+    see_at_once = assign(at_once, lambda: above_left >= 0 if above_right >= 0 else answer.left < 0)
 
     @always_comb
     def see_slope():

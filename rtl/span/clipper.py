@@ -88,15 +88,9 @@ def clipper(clk, reset, chain, opened, met, asks, answer, append, entry, idle, c
         narrows.next = on_way[flags * cycles - 3]
         rises.next = on_way[flags * cycles - 4]
 
-    @always_comb
-    def begin():
-        renewed.next = idle or ended
-        low.next = start
-        high.next = stop
-        if idle or ended:
-            low.next = chain.start
-            high.next = chain.stop
-
+    begin_renewed = assign(renewed, lambda: idle or ended)
+    begin_low = assign(low, lambda: chain.start if idle or ended else start)
+    begin_high = assign(high, lambda: chain.stop if idle or ended else stop)
     find_border = assign(border, lambda: (chain.start + answer.columns) % (1 << width))
 
     @always(clk.posedge)

@@ -117,11 +117,7 @@ def frame_list(
             if take:
                 takes.next[turn] = True
 
-        @always_comb
-        def connect():
-            ready.next = all_ready
-            room.next = 0
-            if not hold:
-                room.next = all_room
+        connect_ready = assign(ready, lambda: all_ready)
+        connect_room = assign(room, lambda: 0 if hold else all_room)
 
     return instances()

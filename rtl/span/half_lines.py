@@ -237,13 +237,8 @@ def half_lines(
             weighed_point.next = point
             weighed_apart.next = apart
 
-    @always_comb
-    def see_ends():
-        ahead_left.next = fore_left_a
-        ahead_right.next = fore_right_a
-        if weighed_entry.back:
-            ahead_left.next = aft_left_a
-            ahead_right.next = aft_right_a
+    see_ahead_left = assign(ahead_left, lambda: aft_left_a if weighed_entry.back else fore_left_a)
+    see_ahead_right = assign(ahead_right, lambda: aft_right_a if weighed_entry.back else fore_right_a)
 
     @always_comb
     def judge():

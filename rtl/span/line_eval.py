@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import line_bits, line_factor_bits, operand_bits, operand_growth_bits
 from raycaster.rtl.span.operand_ends import operand_ends
 from raycaster.rtl.span.records import NUMBER_BITS, Query
@@ -106,15 +107,8 @@ def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configur
             by_growth.next = factor_2_3 * y_growth
 
     else:
-
-        @always_comb
-        def multiply_growth():
-            ax_growth.next = 0
-            by_growth.next = 0
-            if x_growth != 0:
-                ax_growth.next = factor_1_3
-            if y_growth != 0:
-                by_growth.next = factor_2_3
+        multiply_ax_growth = assign(ax_growth, lambda: factor_1_3 if x_growth != 0 else 0)
+        multiply_by_growth = assign(by_growth, lambda: factor_2_3 if y_growth != 0 else 0)
 
     @always(clk.posedge)
     def stage_4():

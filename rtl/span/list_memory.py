@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The memory of the list that is drawn, and that of the list that is shown."""
 
-from myhdl import always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.hdl.signals import bit, unsigned
 from raycaster.hdl.verbs import assign
@@ -41,22 +41,14 @@ def list_memory(
         read_place=upper_read_place, shown=upper_run, places=places, bank=bank,
     )  # fmt: skip
 
-    @always_comb
-    def choose():
-        lower_write.next = write and not upper
-        upper_write.next = write and upper
-        lower_read.next = upper
-        upper_read.next = not upper
-        lower_write_place.next = write_place
-        lower_read_place.next = write_place
-        upper_write_place.next = read_place
-        upper_read_place.next = read_place
-        if upper:
-            lower_write_place.next = read_place
-            lower_read_place.next = read_place
-            upper_write_place.next = write_place
-            upper_read_place.next = write_place
-
+    choose_lower_write = assign(lower_write, lambda: write and not upper)
+    choose_upper_write = assign(upper_write, lambda: write and upper)
+    choose_lower_read = assign(lower_read, lambda: upper)
+    choose_upper_read = assign(upper_read, lambda: not upper)
+    choose_lower_write_place = assign(lower_write_place, lambda: read_place if upper else write_place)
+    choose_lower_read_place = assign(lower_read_place, lambda: read_place if upper else write_place)
+    choose_upper_write_place = assign(upper_write_place, lambda: write_place if upper else read_place)
+    choose_upper_read_place = assign(upper_read_place, lambda: write_place if upper else read_place)
     show = assign(shown.word, lambda: lower_run.word | upper_run.word)
 
     return instances()

@@ -70,13 +70,8 @@ def mirror_side(clk, chain, rect, hidden, crosses, config: Configuration):
         above.next = low > plane
         below.next = high < plane
 
-    @always_comb
-    def choose_side():
-        beyond.next = below
-        short.next = above
-        if towards_high:
-            beyond.next = above
-            short.next = below
+    choose_beyond = assign(beyond, lambda: above if towards_high else below)
+    choose_short = assign(short, lambda: below if towards_high else above)
 
     @always_comb
     def judge():

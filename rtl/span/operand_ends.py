@@ -60,14 +60,8 @@ def operand_ends(
             to_right.next = column_right * move
 
     else:
-
-        @always_comb
-        def multiply():
-            to_left.next = 0
-            to_right.next = 0
-            if move != 0:
-                to_left.next = column_left
-                to_right.next = column_right
+        multiply_to_left = assign(to_left, lambda: column_left if move != 0 else 0)
+        multiply_to_right = assign(to_right, lambda: column_right if move != 0 else 0)
 
     @always(clk.posedge)
     def stage_1():

@@ -125,7 +125,6 @@ def painter(
                 blue_shown.next = blue[2 * i + CHANNEL_BITS : 2 * i]
 
     shown = mixed.joined(red=red_shown, green=green_shown, blue=blue_shown)
-
     mix = assign(mixed.word, lambda: shown)
 
     @always(clk.posedge)

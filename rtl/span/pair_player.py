@@ -4,6 +4,7 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 
 
 @block
@@ -38,13 +39,8 @@ def pair_player(clk, playing, visible_line, next_column, odd, head_0, head_1, ta
             column_end.next = (column_end + 2) % span
             end_of_pair.next = (end_of_pair + 2) % span
 
-    @always_comb
-    def order():
-        now.word.next = head_0.word
-        after.word.next = head_1.word
-        if odd:
-            now.word.next = head_1.word
-            after.word.next = head_0.word
+    order_now = assign(now.word, lambda: head_1.word if odd else head_0.word)
+    order_after = assign(after.word, lambda: head_0.word if odd else head_1.word)
 
     @always_comb
     def compare():
@@ -57,13 +53,8 @@ def pair_player(clk, playing, visible_line, next_column, odd, head_0, head_1, ta
         take_now.next = playing and next_column and (splits or now_ends)
         take_after.next = playing and next_column and splits and after_ends
 
-    @always_comb
-    def take():
-        take_0.next = take_now
-        take_1.next = take_after
-        if odd:
-            take_0.next = take_after
-            take_1.next = take_now
+    pass_take_0 = assign(take_0, lambda: take_after if odd else take_now)
+    pass_take_1 = assign(take_1, lambda: take_now if odd else take_after)
 
     @always(clk.posedge)
     def show():

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Quarters of a weight."""
 
-from myhdl import always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.hdl.signals import unsigned
 from raycaster.hdl.verbs import assign
@@ -20,18 +20,9 @@ def quarters_of(weight, quarters, share):
     once, twice, four_times, sum_2 = (unsigned(width + 3) for _ in range(4))
     product = unsigned(width + 3)
 
-    @always_comb
-    def choose():
-        once.next = 0
-        twice.next = 0
-        four_times.next = 0
-        if quarters[0]:
-            once.next = weight
-        if quarters[1]:
-            twice.next = weight << 1
-        if quarters[2]:
-            four_times.next = weight << 2
-
+    choose_once = assign(once, lambda: weight if quarters[0] else 0)
+    choose_twice = assign(twice, lambda: weight << 1 if quarters[1] else 0)
+    choose_four_times = assign(four_times, lambda: weight << 2 if quarters[2] else 0)
     add_low = assign(sum_2, lambda: (once + twice) % (1 << (width + 3)))
     add_high = assign(product, lambda: (sum_2 + four_times) % (1 << (width + 3)))
     divide = assign(share, lambda: product[width + 2 : 2])

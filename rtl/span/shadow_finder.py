@@ -83,15 +83,9 @@ def shadow_finder(
         last.next = (stop - 1) % (1 << width)
 
     # After the three components of the slope, e.
-    @always_comb
-    def choose_line():
-        back_1.next = back_q
-        factor_1.next = to_plane
-        factor_2.next = offset
-        if axis == 3:
-            back_1.next = winner.back
-            factor_1.next = 1
-            factor_2.next = 0
+    choose_back_1 = assign(back_1, lambda: winner.back if axis == 3 else back_q)
+    choose_factor_1 = assign(factor_1, lambda: 1 if axis == 3 else to_plane)
+    choose_factor_2 = assign(factor_2, lambda: 0 if axis == 3 else offset)
 
     asked = asks.query.joined(
         from_light=none, left=column, right=last, strict=none, axis_1=axis_1, back_1=back_1, factor_1=factor_1,

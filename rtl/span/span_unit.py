@@ -137,22 +137,11 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
 
     # The shadows on a surface are found like the entries of a chain.
     if config.light:
-
-        @always_comb
-        def choose_rays():
-            rays.word.next = chain.word
-            table_level.next = level
-            if shading:
-                rays.word.next = fan.word
-                table_level.next = shaded_level
-            start_set_up.next = begin_set_up or begin_fan
-
-        @always_comb
-        def choose_read():
-            read.next = read_entry or read_shadow
-            place.next = entry_place
-            if read_shadow:
-                place.next = shadow_place
+        choose_rays = assign(rays.word, lambda: fan.word if shading else chain.word)
+        choose_table_level = assign(table_level, lambda: shaded_level if shading else level)
+        choose_start_set_up = assign(start_set_up, lambda: begin_set_up or begin_fan)
+        choose_read = assign(read, lambda: read_entry or read_shadow)
+        choose_place = assign(place, lambda: shadow_place if read_shadow else entry_place)
 
     control = span_control(
         clk=clk, reset=reset, start=start, camera=camera, picture=picture, rect=rects.rect, set_up_done=set_up_done,
@@ -205,11 +194,7 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
                 step.z.next = camera.right_z
 
     # One of them works at a time.
-    @always_comb
-    def choose_rectangle():
-        rects.fetch.next = walk.fetch or fetch
-        rects.index.next = walk.index
-        if fetch:
-            rects.index.next = winner.index
+    choose_fetch = assign(rects.fetch, lambda: walk.fetch or fetch)
+    choose_index = assign(rects.index, lambda: winner.index if fetch else walk.index)
 
     return instances()

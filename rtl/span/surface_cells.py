@@ -137,16 +137,9 @@ def surface_cells(
             painting.next = False
 
     # Unless the first cell is sought, the walk begins with the next one, in the column in which it begins.
-    @always_comb
-    def see_cell():
-        here.next = place
-        if painting:
-            here.next = column
-        old_cell.next = cells.cell_u
-        forward.next = cells.rises_u
-        if on_v:
-            old_cell.next = cells.cell_v
-            forward.next = cells.rises_v
+    see_here = assign(here, lambda: column if painting else place)
+    see_old_cell = assign(old_cell, lambda: cells.cell_v if on_v else cells.cell_u)
+    see_forward = assign(forward, lambda: cells.rises_v if on_v else cells.rises_u)
 
     @always_comb
     def move():
@@ -160,12 +153,8 @@ def surface_cells(
         config=config,
     )  # fmt: skip
 
-    @always_comb
-    def show():
-        odd_u.next = cells.cell_u[0]
-        odd_v.next = cells.cell_v[0]
-        next_column.next = cells.next_u
-        if cells.next_v < cells.next_u:
-            next_column.next = cells.next_v
+    show_odd_u = assign(odd_u, lambda: cells.cell_u[0])
+    show_odd_v = assign(odd_v, lambda: cells.cell_v[0])
+    show_next_column = assign(next_column, lambda: cells.next_v if cells.next_v < cells.next_u else cells.next_u)
 
     return instances()

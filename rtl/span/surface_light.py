@@ -97,14 +97,8 @@ def surface_light(
         elif scanned:
             memory[looked].next = gone
 
-    @always_comb
-    def choose_level():
-        looked.next = seen
-        here.next = place
-        if painting:
-            looked.next = level
-            here.next = column
-
+    choose_looked = assign(looked, lambda: level if painting else seen)
+    choose_here = assign(here, lambda: column if painting else place)
     look_up = assign(shadows.word, lambda: memory[looked])
 
     @always_comb

@@ -80,7 +80,6 @@ def surfaces(
     see_need = assign(unseen, lambda: gap or (share == 0))
 
     given = new.joined(share=share, colour=colour, kind=kind, colour_2=rect.colour_2)
-
     join = assign(new.word, lambda: given)
 
     if patterns:
@@ -128,13 +127,8 @@ def surfaces(
         see_next = assign(next_column, lambda: next_light)
 
     show = assign(seen_share, lambda: surface.share)
-
-    @always_comb
-    def request():
-        asks.ask.next = cells_asks.ask or light_asks.ask
-        asks.query.word.next = cells_asks.query.word
-        if light_asks.ask:
-            asks.query.word.next = light_asks.query.word
+    request_ask = assign(asks.ask, lambda: cells_asks.ask or light_asks.ask)
+    request_asks = assign(asks.query.word, lambda: light_asks.query.word if light_asks.ask else cells_asks.query.word)
 
     if patterns:
 

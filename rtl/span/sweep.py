@@ -67,12 +67,8 @@ def sweep(
     none, no_number = tied(0, 1), tied(0, NUMBER_BITS)
 
     # The first column of interest is where both are met, as an entry begins before it ends.
-    @always_comb
-    def see_left():
-        ahead.next = tested.start >= column
-        left.next = column
-        if tested.start >= column:
-            left.next = tested.start
+    see_ahead = assign(ahead, lambda: tested.start >= column)
+    see_left = assign(left, lambda: tested.start if tested.start >= column else column)
 
     # Of two entries on one axis, the one with the lower rank is nearer.
     @always_comb
@@ -245,16 +241,9 @@ def sweep(
         last.next = (present.stop - 1) % (1 << width)
 
     see_right = assign(right, lambda: last if last < bound else bound)
-
-    @always_comb
-    def choose_rival():
-        rival.word.next = winner.word
-        asked_left.next = left_1
-        asked_right.next = right
-        if state == SweepState.RIVAL:
-            rival.word.next = heir.word
-            asked_left.next = stop
-            asked_right.next = stop
+    choose_rival = assign(rival.word, lambda: heir.word if state == SweepState.RIVAL else winner.word)
+    choose_asked_left = assign(asked_left, lambda: stop if state == SweepState.RIVAL else left_1)
+    choose_asked_right = assign(asked_right, lambda: stop if state == SweepState.RIVAL else right)
 
     @always_comb
     def extend():
