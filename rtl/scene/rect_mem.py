@@ -43,7 +43,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     slot = signed(address_width - 1)
     index, chosen = (Signal(intbv(0, min=0, max=count)) for _ in range(2))
     next_index = unsigned(index_width)
-    found, in_table, write, repeats, again = (bit() for _ in range(5))
+    found, in_table, known, write, repeats, again = (bit() for _ in range(6))
     written = unsigned(count)
     stored, old, mask, data, merged = (written_of(config) for _ in range(5))
     implemented = tied(implemented_bits(config), len(merged.word))
@@ -84,12 +84,17 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     clip_found = assign(found, lambda: (slot >= 0) and (slot < count))
     clip_chosen = assign(chosen, lambda: slot[index_width:] if (slot >= 0) and (slot < count) else 0)
 
-    # Both are those of bus.address, as this changes with an access only. A write never comes before the first access.
+    # All are those of bus.address, as this changes with an access only. A write never comes before the first access.
     @always(clk.posedge)
     def follow_address():
         if bus.access:
             in_table.next = found
             index.next = chosen
+
+    @always_seq(clk.posedge, reset=reset)
+    def follow_written():
+        if bus.access:
+            known.next = written[chosen] or repeats
 
     decode = assign(write, lambda: bus.write and in_table)
     see_repetition = assign(repeats, lambda: write and next_index == index)
@@ -106,7 +111,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     @always_comb
     def find_old():
         old.word.next = 0
-        if written[index]:
+        if known:
             old.word.next = stored.word
             if again:
                 old.word.next = latest.word

@@ -267,7 +267,7 @@ always @* if (known) begin
     if ($past(reads)) assert (watched_1 == (bus_address == watched));
     if (bus_write || registers.reading) begin
         assert (rects.in_table == (bus_address >= TABLE && bus_address < TABLE + 8));
-        if (rects.in_table) assert (rects.index == bus_address[2]);
+        if (rects.in_table) assert (rects.index == bus_address[2] && rects.known == rects.written[rects.index]);
     end
     assert (!(wrote && $past(reads)));
     assert (registers.frame == frame);

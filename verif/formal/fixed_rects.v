@@ -72,8 +72,9 @@ always @(posedge clk) if (rects_fetch) fetched <= live[rects_index] && running;
 always @* if (fetched) assert (fixed_rect == rects_rect_word);
 always @* if (running) assert ((rects_usable & live) == live);
 
-// Invariants: the memory's index, and its contents, which are registers in this model.
-always @* if (running && accessed) assert (memory.in_table && memory.index == slot);
+// Invariants: what is known of the memory's address, and its contents, which are registers in this model.
+always @* if (running && accessed)
+    assert (memory.in_table && memory.index == slot && memory.known == memory.written[slot]);
 fixed_rects_slot #(RECT_BITS, SCENE_0, KEPT) slot_0 (
     running, wrote, memory.storing && memory.latest_index == 0, memory.latest_word, written_0, shadow[0],
     pending[0], live[0], memory.written[0], \memory.shadow_words[0] , \memory.banks[0] ,
