@@ -28,7 +28,7 @@ from raycaster.golden.exact import ExactModel
 from raycaster.golden.frames import check_list, cycles_of, refreshes, runs_of, scene_cycles, scene_rows
 from raycaster.golden.picture import count_wrong
 from raycaster.output import Console, Table
-from raycaster.rtl.engines import ENGINES, engine_of
+from raycaster.rtl.engines import ENGINES, buffered_engine_of
 from raycaster.runs.jobs import processes, run_jobs
 from raycaster.runs.outcomes import add_keep_option, keep
 from raycaster.runs.tools import find_program
@@ -91,7 +91,7 @@ def cycles_a_frame(config: Configuration, scene: Scene, reflections: int | None 
     """
     if config.facts.whole_frames:
         return scene_cycles(scene, config, reflections)
-    return config.screen_geometry.rows * config.groups * engine_of(config).group_cycles(config)
+    return config.screen_geometry.rows * config.groups * buffered_engine_of(config).group_cycles(config)
 
 
 def in_time(design: Design, options: Mapping[str, Any]) -> dict[str, int]:

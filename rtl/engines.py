@@ -4,6 +4,7 @@
 from collections.abc import Mapping
 
 from raycaster.configuration import Configuration
+from raycaster.rtl.buffered.engine import LineBufferedEngine
 from raycaster.rtl.engine.engine import Engine
 from raycaster.rtl.exact.engine import EXACT
 from raycaster.rtl.seed.engine import SEED
@@ -19,3 +20,10 @@ SUCCESSORS: Mapping[object, str] = {"beam": "span"}
 def engine_of(config: Configuration) -> Engine:
     """Return the engine of a design."""
     return ENGINES[config.engine]
+
+
+def buffered_engine_of(config: Configuration) -> LineBufferedEngine:
+    """Return the engine of a design with a line buffer."""
+    engine = engine_of(config)
+    assert isinstance(engine, LineBufferedEngine)
+    return engine

@@ -15,7 +15,7 @@ from raycaster.golden.model import Model
 from raycaster.golden.spans import SpanModel
 from raycaster.golden.world import Rectangles
 from raycaster.registers import Register, register_map
-from raycaster.rtl.engines import engine_of
+from raycaster.rtl.engines import buffered_engine_of
 from raycaster.scene import UNTURNED, Basis, Light
 from raycaster.screens import Screen
 
@@ -594,7 +594,8 @@ class RegisterFile:
         expected, name = self.agent.answer[1], self._answered
         if name == "cycles" and not self.config.facts.whole_frames:
             cycles = self.agent.registers[name].unpack(word)
-            most = (self.config.screen_geometry.row_cycles, engine_of(self.config).group_cycles(self.config))
+            longest = buffered_engine_of(self.config).group_cycles(self.config)
+            most = (self.config.screen_geometry.row_cycles, longest)
             seen = (cycles["row"], cycles["group"])
             for least, value, bound in zip(self._least_cycles, seen, most, strict=True):
                 assert least <= value <= bound, f"cycles reads {cycles}; at least {self._least_cycles}, at most {most}"

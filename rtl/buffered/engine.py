@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from raycaster.complaints import as_typed
-from raycaster.configuration import Configuration
+from raycaster.configuration import Configuration, Options
 from raycaster.rtl.engine.engine import Engine
 
 GROUP_OVERHEAD = 4
@@ -36,8 +36,28 @@ class LineBufferedEngine(Engine):
         control, unit = self.blocks
         return partial(ray_caster_renderer, control=control, unit=unit)
 
+    def refuse(self, options: Options) -> None:
+        """Refuse lists, and culling in a fixed scene."""
+        super().refuse(options)
+        if options.list:
+            raise ValueError(f"list: the {self.facts.name} engine has no lists of runs; leave out {options.list}")
+        if options.culling and options.fixed is not None:
+            either = f"{as_typed('culling')} or {as_typed('fix')}"
+            raise ValueError(f"culling: does not apply to a fixed scene; leave out {either}")
+
+    @abstractmethod
+    def rect_cycles(self, config: Configuration) -> int:
+        """Return the cycles from one rectangle to the next."""
+
+    @abstractmethod
+    def pass_latency(self, config: Configuration) -> int:
+        """Return the cycles from a pass's last rectangle to the next pass."""
+
     def group_cycles(self, config: Configuration) -> int:
-        """Add the cycles for the rectangles of each pass, the latency of each pass, and the overhead of a group."""
+        """Return the cycles per group in the worst case, with all rectangles enabled.
+
+        They are those for the rectangles of each pass, the latency of each pass, and the overhead of a group.
+        """
         tests = sum(mask.bit_count() for mask in config.passes) * self.rect_cycles(config)
         return tests + len(config.passes) * self.pass_latency(config) + GROUP_OVERHEAD
 

@@ -7,9 +7,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from raycaster.complaints import as_typed
 from raycaster.configuration import MOST_RECTANGLES, Configuration, Facts, Options
-from raycaster.rtl.engine.engine import Engine, check_pairs
-from raycaster.screens import LIST_SCREENS
+from raycaster.rtl.engine.engine import Engine
+from raycaster.screens import LIST_SCREENS, Screen
 
 RUNS_PER_ROW = 120
 """Mean runs of a row that a list holds by default; packaged scenes take at most 112 at 320 columns, 119 at 1920."""
@@ -25,6 +26,10 @@ class Span(Engine):
 
         return span_renderer
 
+    def scales(self, screen: Screen) -> tuple[int, ...]:
+        """Return those for which the monitor has pixels; first the one with a ray per pixel."""
+        return tuple(sorted(screen.scales, key=lambda scale: scale != screen.doubling))
+
     def refuse(self, options: Options) -> None:
         """Refuse culling."""
         super().refuse(options)
@@ -34,7 +39,7 @@ class Span(Engine):
     def sized(self, config: Configuration, options: Options) -> Configuration:
         """Take one unit, and lists that hold the packaged scenes."""
         if config.pixels > 1:
-            check_pairs(config)
+            _check_pairs(config)
         screen = config.screen_geometry
         if options.list is not None and options.list < screen.rows:
             raise ValueError(f"list: {options.list} is less than a run for each of the {screen.rows} rows; take more")
@@ -53,6 +58,24 @@ class Span(Engine):
 
     def check(self, config: Configuration) -> None:
         """Accept any design: it draws as many frames per second as it can."""
+
+
+def _check_pairs(config: Configuration) -> None:
+    """Refuse two pixels per clock unless they are neighbouring columns and all sync edges are between clocks.
+
+    Raises:
+        ValueError: the screen has no such pairs.
+    """
+    screen = config.whole_screen
+    if screen.doubling != 1:
+        finest = config.scale * screen.doubling
+        raise ValueError(
+            f"pixels: 2 per clock need one column per pixel of the monitor, {as_typed('scale', finest)}, not "
+            f"{config.scale}"
+        )
+    line = screen.horizontal
+    if any(part % 2 for part in (line.visible, line.front, line.sync, line.back)):
+        raise ValueError(f"pixels: 2 per clock need an even width and blanking, which the {config.screen} screen lacks")
 
 
 SPAN = Span(

@@ -11,7 +11,7 @@ from cocotb.handle import HierarchyObject
 from cocotb.triggers import ClockCycles
 
 from raycaster.golden.frames import scene_cycles
-from raycaster.rtl.engines import engine_of
+from raycaster.rtl.engines import buffered_engine_of
 from raycaster.scene import Scene
 from raycaster.sim.harness import Harness
 from raycaster.sim.register_model import EVERY_LANE, SceneFollower
@@ -62,7 +62,7 @@ async def disabled_rectangles_cost_nothing(bench: HierarchyObject) -> None:
     check_cycles(all_cycles, configuration)
     is_full = len(scene.rect) == configuration.rectangles and not configuration.facts.whole_frames
     if is_full and not (configuration.culling or configuration.light):
-        assert all_cycles["group"] == engine_of(configuration).group_cycles(configuration)
+        assert all_cycles["group"] == buffered_engine_of(configuration).group_cycles(configuration)
     await bus.write("cycles")
     assert await bus.read("cycles") == {"row": 0, "group": 0}, "a write clears the cycle counters"
 
@@ -75,7 +75,11 @@ async def disabled_rectangles_cost_nothing(bench: HierarchyObject) -> None:
         assert await frame_cycles(harness, few) < all_frame
         return
     few_cycles = await bus.read("cycles")
-    saved = (len(scene.rect) - len(few.rect)) * (reflections + 1) * engine_of(configuration).rect_cycles(configuration)
+    saved = (
+        (len(scene.rect) - len(few.rect))
+        * (reflections + 1)
+        * buffered_engine_of(configuration).rect_cycles(configuration)
+    )
     fallen = all_cycles["group"] - few_cycles["group"]
     assert 0 <= fallen <= saved if configuration.culling else fallen == saved, (all_cycles, few_cycles)
     assert (few_cycles["row"] < all_cycles["row"]) == (saved > 0)

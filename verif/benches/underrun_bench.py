@@ -8,7 +8,7 @@ import cocotb
 import numpy as np
 from cocotb.handle import HierarchyObject
 
-from raycaster.rtl.engines import engine_of
+from raycaster.rtl.engines import buffered_engine_of
 from raycaster.scene import Scene
 from raycaster.sim.harness import Harness
 from raycaster.verif.expected import check_cycles
@@ -55,7 +55,7 @@ async def underrun(bench: HierarchyObject) -> None:
     await expect_in_time(light_picture, "the light scene")
 
     await harness.load(heavy, reflections)
-    assert engine_of(configuration).group_cycles(configuration) > configuration.group_budget, (
+    assert buffered_engine_of(configuration).group_cycles(configuration) > configuration.group_budget, (
         "this design cannot underrun"
     )
     _expect_abandoned_rows(harness, await monitor.frame(), heavy_picture, light_picture)

@@ -34,7 +34,7 @@ from raycaster.rtl.common import widths
 from raycaster.rtl.common.interfaces import AIM_CYCLES
 from raycaster.rtl.common.records import Camera, Mirror, Rect, Surface, look_fields
 from raycaster.rtl.cull.rect_setup import SETUP_LATENCY
-from raycaster.rtl.engines import ENGINES, SEED, engine_of
+from raycaster.rtl.engines import ENGINES, SEED, buffered_engine_of
 from raycaster.rtl.span.first_change import division_cycles, quotient_bits
 from raycaster.rtl.span.records import Entry
 from raycaster.screens import Screen
@@ -101,9 +101,9 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
             "culling", "turn", "materials", "patterns", "light", "divider_steps", "scale",
         )
     },
-    "RECT_CYCLES": lambda config: engine_of(config).rect_cycles(config),
-    "PASS_LATENCY": lambda config: engine_of(config).pass_latency(config),
-    "GROUP_CYCLES": lambda config: engine_of(config).group_cycles(config),
+    "RECT_CYCLES": lambda config: buffered_engine_of(config).rect_cycles(config),
+    "PASS_LATENCY": lambda config: buffered_engine_of(config).pass_latency(config),
+    "GROUP_CYCLES": lambda config: buffered_engine_of(config).group_cycles(config),
     "NEAREST": lambda config: config.rounding == "nearest",
     # Latencies.
     "LEAD": lambda config: int(config.screen_geometry.clocks_per_pixel == 1),
@@ -128,7 +128,7 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
     "LIGHT_BITS": widths.light_slope_bits,
     "AIM_CYCLES": lambda config: AIM_CYCLES,
     "STEEPEST": widths.steepest_slope,
-    "CYCLE_BITS": lambda config: bits_for(engine_of(config).rect_cycles(config)),
+    "CYCLE_BITS": lambda config: bits_for(buffered_engine_of(config).rect_cycles(config)),
     "LOOK_BITS": lambda config: sum(look_fields(config).values()),
     "CAMERA_BITS": lambda config: len(Camera(config).word),
     "RECT_BITS": lambda config: len(Rect(config).word),

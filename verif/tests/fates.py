@@ -13,7 +13,7 @@ from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.common.interfaces import GroupFate, ShadowPass
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
-from raycaster.rtl.engines import engine_of
+from raycaster.rtl.engines import buffered_engine_of
 from raycaster.verif.expected import EARLY_OUT_AT, TraceCycle, ends_early, rect_cycles, sorted_rect, trace_cycles
 from raycaster.verif.random_world import random_looks
 
@@ -124,7 +124,7 @@ def check_control(leaf: Bench, config: Configuration, random: np.random.Generato
         drive({**held, "enable": 1}, quiet)
         trace = trace_cycles(config, usable, reflections, **fate)
         if number == 0:
-            assert len(trace) + 3 == engine_of(config).group_cycles(config), (
+            assert len(trace) + 3 == buffered_engine_of(config).group_cycles(config), (
                 "including done and the two cycles of reset"
             )
         # A row may be abandoned at any moment; results in flight must not appear later.

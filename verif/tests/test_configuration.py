@@ -17,7 +17,7 @@ from hypothesis import given
 from raycaster.configuration import Configuration, ConfigurationError
 from raycaster.design.decide import OPTIONS, configure
 from raycaster.design.options import CommandParser, add_configuration_options, as_options, command_line, given_options
-from raycaster.rtl.engines import ENGINES, engine_of
+from raycaster.rtl.engines import ENGINES, buffered_engine_of
 
 FEATURES = {"turn": True, "materials": True, "patterns": True}
 PAIRS = {"pixels": 2, "rows": 180, "scale": 6}
@@ -57,7 +57,7 @@ def test_options_make_a_consistent_design_or_a_one_line_error():
         assert config.quotient_bits == 9 + config.fraction_bits
         # A row needs its last cycle for the hand-over; a whole frame may be late.
         if not config.facts.whole_frames and not config.allow_underrun:
-            assert config.groups * engine_of(config).group_cycles(config) < screen.row_cycles
+            assert config.groups * buffered_engine_of(config).group_cycles(config) < screen.row_cycles
         assert config.divider_bits in ((1, 2, 3) if config.engine == "seed" else (0,))
 
     check()
@@ -113,8 +113,8 @@ def test_names_are_unique(chosen, other):
 )
 def test_as_few_units_as_meet_the_row_budget(options, units, cycles):
     config = configure(engine="exact", **options)
-    assert (config.units, engine_of(config).group_cycles(config)) == (units, cycles)
-    assert config.groups * engine_of(config).group_cycles(config) < config.screen_geometry.row_cycles
+    assert (config.units, buffered_engine_of(config).group_cycles(config)) == (units, cycles)
+    assert config.groups * buffered_engine_of(config).group_cycles(config) < config.screen_geometry.row_cycles
 
 
 # Screens of whole frames ---------------------------------------------------------------------------------------------

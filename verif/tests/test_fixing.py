@@ -28,7 +28,7 @@ from raycaster.golden.exact import ExactModel
 from raycaster.golden.frames import runs_of, scene_rows
 from raycaster.golden.world import Rectangles
 from raycaster.registers import address_bits
-from raycaster.rtl.engines import ENGINES, engine_of
+from raycaster.rtl.engines import ENGINES, buffered_engine_of
 from raycaster.scene import Camera, Rectangle, Scene, dump_scene, load_scene
 from raycaster.sim.simulator import SimulationError
 from raycaster.verif.random_scenes import random_scene
@@ -163,7 +163,7 @@ def test_fixed_rectangles_are_in_order():
 def test_units_are_as_few_as_possible():
     general, config = design_for(BOXES, {}).configuration, fix(BOXES, {}, "all").design.configuration
     assert (general.units, general.divider_bits, config.units, config.divider_bits) == (32, 1, 10, 3)
-    assert engine_of(config).group_cycles(config) <= config.group_budget
+    assert buffered_engine_of(config).group_cycles(config) <= config.group_budget
     # Given options are kept.
     assert fix(BOXES, {"units": "40"}, "all").design.configuration.units == 40
     assert fix(BOXES, {"divider_bits": "1"}, "rects").design.configuration.divider_bits == 1
@@ -187,7 +187,7 @@ def test_passes_count_for_the_budget():
     rectangle = fixed_rectangle(load_scene(BOXES).rect[0])
     fixed = FixedScene((rectangle,) * 4, (0b0011, 0b1000))
     config = configure(fixed=fixed, units=32, divider_bits=1)
-    assert engine_of(config).group_cycles(config) == (2 * 9 + 6) + (9 + 6) + 4
+    assert buffered_engine_of(config).group_cycles(config) == (2 * 9 + 6) + (9 + 6) + 4
     with pytest.raises(UserError, match="for 1 reflections, not 2"):
         configure(fixed=fixed, reflections=2)
 
@@ -235,7 +235,7 @@ def test_no_pixel_changes(bench: Bench, tmp_path, engine, name, scope, options):
     assert design.reflections == (2 if name == MIRRORS else 1)
     result = json.loads((bench("sim.frame_bench", design.configuration, "icarus", scene) / "result.json").read_text())
     assert result["wrong_vs_golden"] == 0
-    assert result["worst_group_cycles"] <= engine_of(design.configuration).group_cycles(design.configuration)
+    assert result["worst_group_cycles"] <= buffered_engine_of(design.configuration).group_cycles(design.configuration)
 
 
 @pytest.mark.slow

@@ -55,7 +55,7 @@ MAY_IMPORT_IN_RTL = {
     "cull": ("common", "engine"),
     "buffered": ("common", "video", "engine", "cull"),
     **dict.fromkeys(ENGINES, ("common", "video", "engine", "buffered")),
-    "engines.py": ("engine", *ENGINES),
+    "engines.py": ("engine", "buffered", *ENGINES),
     "system": ("common", "dvi", "scene", "bus", "engines.py"),
 }
 """Other folders of rtl/, and the list of engines, that each of them there may import from."""

@@ -20,7 +20,7 @@ from raycaster.golden.engines import model_of
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.rtl.buffered.ray_caster_renderer import ray_caster_renderer
-from raycaster.rtl.engines import engine_of
+from raycaster.rtl.engines import buffered_engine_of
 from raycaster.screens import Screen, Span
 from raycaster.verif.expected import sorted_rect, trace_cycles
 
@@ -68,7 +68,7 @@ def test_ray_caster_renderer(config, leaf_of, random):
     assert len(set(golden.flat)) > 1, "the rectangle must have an edge in view"
     empty = np.full_like(golden, pixel_word(config, background))
     group = len(trace_cycles(config, [0], config.most_reflections)) + 3
-    assert group == engine_of(config).group_cycles(config)
+    assert group == buffered_engine_of(config).group_cycles(config)
     groups_in_time = min(config.groups, (screen.row_cycles - 1) // group)
     shown = golden.copy()
     # Columns that were not written in time keep their half's old content, from the empty scene.

@@ -21,7 +21,7 @@ from raycaster.golden.world import Rectangles
 from raycaster.hdl.leaf import Leaf
 from raycaster.program import basis_fields, rectangle_fields
 from raycaster.registers import register_map
-from raycaster.rtl.engines import engine_of
+from raycaster.rtl.engines import buffered_engine_of
 from raycaster.rtl.system.ports import module_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.scene import UNTURNED, Basis
@@ -149,7 +149,7 @@ def test_ray_caster_module(config, tmp_path, random):
     answers = {name: bus.registers[name].unpack(outputs[cycle]["avs_s0_readdata"]) for name, cycle in bus.reads.items()}
     assert check_bus(config, bus.stimulus, outputs) == len(bus.reads)
     assert answers["status"] == {"busy": 0, "underrun": 0, "bad_rectangle": 0, "frame": 2}
-    assert answers["cycles"]["group"] <= engine_of(config).group_cycles(config)
+    assert answers["cycles"]["group"] <= buffered_engine_of(config).group_cycles(config)
     assert answers["size"] == {"units": config.units, "rectangles": config.rectangles, "rows": config.rows}
     assert answers["engine"]["fraction_bits"] == config.fraction_bits
 
