@@ -44,7 +44,7 @@ def module_text(contents: Contents, name: str, header: str, vocabulary: Mapping[
     comments = Comments(contents.block, vocabulary, LINE_LENGTH)
     functions: dict[str, str] = {}
     with states_by_name(contents.enumerations, contents.states):
-        parts = [_part(part, contents, comments, functions) for part in contents.parts]
+        parts = _grouped(contents.parts, [_part(part, contents, comments, functions) for part in contents.parts])
         initial_values = "\n".join(_initial_values(contents))
     sections = [
         f"{header}\n\n`timescale 1ns/10ps",
@@ -183,6 +183,20 @@ def _wires(contents: Contents) -> Iterator[str]:
                 value = re.sub(r"^\d+'b", "'b", contents.text(part))
                 yield f"assign {name}[{bits}] = {value};\n"
                 high = low
+
+
+def _grouped(parts: Sequence[Any], texts: Sequence[str]) -> list[str]:
+    """Join the texts of assignments that are on consecutive lines of a block."""
+    groups: list[str] = []
+    next_line = None
+    for part, text in zip(parts, texts, strict=True):
+        code = part.function.__code__ if hasattr(part, "function") and internals.assigned(part) else None
+        if code and (code.co_filename, code.co_firstlineno) == next_line:
+            groups[-1] += f"\n{text}"
+        else:
+            groups.append(text)
+        next_line = (code.co_filename, code.co_firstlineno + 1) if code else None
+    return groups
 
 
 def _part(part: Any, contents: Contents, comments: Comments, functions: dict[str, str]) -> str:

@@ -112,7 +112,7 @@ def test_fields_and_parts_belong_to_the_word(made):
 
 
 @block
-def with_verbs(a, b, behind, product):
+def with_verbs(a, b, behind, product, copied):
     """Compute with verbs only."""
     total, add = plus(a, b, 5)
     difference, subtract = minus(a, b, Signed(5))
@@ -125,24 +125,26 @@ def with_verbs(a, b, behind, product):
         lambda: is_less,
     )
     show = assign(product, lambda: tripled)
+    again = assign(copied, lambda: tripled)
 
-    return add, subtract, multiply, compare, see, show
+    return add, subtract, multiply, compare, see, show, again
 
 
 def test_verbs(tmp_path, random):
     """A verb is an assignment to a signal with the name of the block's variable."""
     arguments = {"a": lambda: unsigned(4), "b": lambda: unsigned(4), "behind": bit, "product": lambda: unsigned(7)}
+    arguments["copied"] = arguments["product"]
     leaf = Leaf(with_verbs, lambda: {name: made() for name, made in arguments.items()}, tmp_path)
     stimulus = random_inputs(leaf, random, 50)
     for inputs, outputs in zip(stimulus, leaf.run_both(stimulus), strict=True):
         a, b = inputs["a"], inputs["b"]
-        assert outputs == {"behind": a < b, "product": 3 * (a + b)}
+        assert outputs == {"behind": a < b, "product": 3 * (a + b), "copied": 3 * (a + b)}
     text = (tmp_path / "with_verbs.v").read_text()
     assert re.findall(r"assign (.*);", text) == [
         "total = a + b", "difference = a - b", "tripled = total * 3", "is_less = difference < 0",
-        "behind = is_less", "product = tripled",
+        "behind = is_less", "product = tripled", "copied = tripled",
     ]  # fmt: skip
-    assert "\n// The result of two lines.\nassign behind = is_less;\n\nassign product" in text
+    assert "\n// The result of two lines.\nassign behind = is_less;\n\nassign product = tripled;\nassign copied" in text
 
 
 @block
