@@ -33,7 +33,7 @@ def module_text(contents: Contents, name: str, header: str, vocabulary: Mapping[
     """Return the file of one module.
 
     The block's docstring is above the module, its arguments' texts are above the ports, and the comment above a process
-    is kept. Blank lines separate processes and instances.
+    is kept. Blank lines separate processes and instances, except assignments on consecutive lines of the block.
 
     Args:
         contents: the block's signals, processes and instances.

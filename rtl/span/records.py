@@ -85,8 +85,8 @@ class Frame(Record):
         )
 
 
-class Surface(Record):
-    """The surface that rays of a span see: its colour, and its share in the picture, in units of 4 ** -reflections.
+class Paint(Record):
+    """The colour of a surface that rays of a span see, and its share in the picture, in units of 4 ** -reflections.
 
     With patterns, kind, colour_2: as in a `Look`, with kind 0 for a share of 0.
     """

@@ -22,7 +22,7 @@ from raycaster.rtl.span.entry_table import entry_table
 from raycaster.rtl.span.fold import fold
 from raycaster.rtl.span.line_desk import line_desk
 from raycaster.rtl.span.painter import painter
-from raycaster.rtl.span.records import Aim, Answer, Asks, Chain, Entry, Frame, Surface, count_bits
+from raycaster.rtl.span.records import Aim, Answer, Asks, Chain, Entry, Frame, Paint, count_bits
 from raycaster.rtl.span.run_joiner import run_joiner
 from raycaster.rtl.span.set_up import set_up
 from raycaster.rtl.span.span_control import span_control
@@ -122,7 +122,7 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
         )  # fmt: skip
     else:
         stepped, next_column, go_on = tied(0, 1), tied(0, width), unconnected(1)
-        given, surface = Surface(config), Surface(config)
+        given, surface = Paint(config), Paint(config)
         plain = given.joined(share=share, colour=colour)
         looks = surface_table(
             clk=clk, paint=begin_paint, level=level, given=given, seen=seen, shown=surface, config=config

@@ -16,9 +16,9 @@ def surface_table(clk, paint, level, given, seen, shown, config: Configuration):
     Args:
         paint: strobe; from now on a ray sees this surface at this level.
         level: unsigned, `level_bits` bits; read with paint.
-        given: `Surface`; read with paint.
+        given: `Paint`; read with paint.
         seen: unsigned, `level_bits` bits; the level that is read.
-        shown: output `Surface`; that of this level. Combinational.
+        shown: output `Paint`; that of this level. Combinational.
     """
     memory = [unsigned(len(given.word)) for _ in range(1 << level_bits(config))]
 

@@ -10,7 +10,7 @@ from raycaster.rtl.common.records import Colour
 from raycaster.rtl.common.widths import KIND_BITS, RGB_BITS, column_bits
 from raycaster.rtl.engine.pattern_colour import pattern_colour
 from raycaster.rtl.engine.shade_colour import shade_colour
-from raycaster.rtl.span.records import Asks, Surface
+from raycaster.rtl.span.records import Asks, Paint
 from raycaster.rtl.span.surface_cells import surface_cells
 from raycaster.rtl.span.surface_light import surface_light
 from raycaster.rtl.span.surface_table import surface_table
@@ -67,7 +67,7 @@ def surfaces(
     """
     width, patterns, light = column_bits(config), config.patterns, config.light
 
-    new, surface, bright = Surface(config), Surface(config), Colour()
+    new, surface, bright = Paint(config), Paint(config), Colour()
     kind = unsigned(KIND_BITS) if patterns else tied(0, KIND_BITS)
     unseen = bit()
     pattern = unsigned(RGB_BITS) if patterns else surface.colour

@@ -526,7 +526,7 @@ class SpanProbes(Description):
             *([make("shadow", "shadow", "clipper", "start stop", self._entry, "entry"),
                 make("light", "light", "shadow_scan", "dark next=next_dark"),
                 make("dark", "seen", "surface_light", "dark", **hidden)] if light else ()),
-            make("share and colour", "seen", table, "share plain=colour", records.Surface(config), "shown", **hidden),
+            make("share and colour", "seen", table, "share plain=colour", records.Paint(config), "shown", **hidden),
             *([make("colour of the cell", "seen", f"{self.blocks['surfaces']}.pattern_colour_i", "bright=colour")]
                 if patterns else ()),
             *([make("colour there", "seen", f"{self.blocks['surfaces']}.shade_colour_i", "colour=shaded")]

@@ -143,7 +143,7 @@ def test_shadow_scan(leaf_of, random):
 
 def test_surface_table(leaf_of, random):
     config = span_config(screen="tiny", rectangles=4, reflections=3, patterns=True)
-    records_ = {"given": lambda: records.Surface(config), "shown": lambda: records.Surface(config)}
+    records_ = {"given": lambda: records.Paint(config), "shown": lambda: records.Paint(config)}
     leaf, memory = leaf_of(surface_table, config, level=level_bits(config), seen=level_bits(config), **records_), {}
     for level in range(4):
         memory[level] = int(random.integers(1 << RGB_BITS))
