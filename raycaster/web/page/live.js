@@ -4,6 +4,7 @@
 
 const CLOCKS = [25, 74.25];      // MHz, for which the frame rate of hardware is given
 const REST = 2;                  // pause after a check of a picture, in lengths of that check
+const REPORTING = 100;           // ms between changes of the text and the plans while the picture moves
 const CLICK_REACH = 4;           // most movement of a click, in pixels of the page
 const ADDRESS_DELAY = 400;       // ms from a change to the address with it
 const TYPING_DELAY = 600;        // ms without a key after which typing is one step of undo
@@ -320,25 +321,29 @@ tabs.room = {
     addEventListener("hashchange", fromAddress);
     if (!(await fromAddress())) open(RayCaster.scenes[RayCaster.walk.first], `${RayCaster.walk.first}.toml`);
 
-    const report = (frame, { name, shares }) => {
-      const { columns, rows } = frame.design, { position } = frame.camera;
+    // Text below the picture, and plans, of the last frame. They take longer than the picture itself.
+    let reported = 0, reportedAt = 0;
+    const report = () => {
+      const { design, clocks, runs, camera, drawing: { name, shares } } = last, { columns, rows } = design;
       const speed = rate ? `${rate.toFixed(0)} frames per second, ` : "";
-      find("room-status").textContent = `${speed}${counted(frame.clocks, "clock")} and ${counted(frame.runs, "run")} ` +
+      find("room-status").textContent = `${speed}${counted(clocks, "clock")} and ${counted(runs, "run")} ` +
         `per frame of ${columns} x ${rows}, ${counted(shares.length, "simulated unit")}`;
       find("room-place").textContent =
-        `Camera at ${position.join(", ")}, yaw ${walker.yaw.toFixed(0)}°, pitch ${walker.pitch.toFixed(0)}°`;
-      showCost(frame, name, frame.design, room.scene);
-      const { clocks, runs, camera, version } = frame;
-      RayCaster.state.room = { hash: pictureHash(frame.pixels), clocks, runs, frames, rate, version, camera, model: name };
+        `Camera at ${camera.position.join(", ")}, yaw ${walker.yaw.toFixed(0)}°, pitch ${walker.pitch.toFixed(0)}°`;
+      showCost(last, name, design, room.scene);
+      drawPlans();
       reportChecks();
+      reported = frames;
+      reportedAt = performance.now();
     };
     const reportChecks = () => {
       const { compared, different, last: checked, verdict } = checks;
       const line = find("room-compared");
-      line.textContent = `Pixels compared with exact arithmetic: ${compared.toLocaleString("en")}, different: ` +
+      const text = `Pixels compared with exact arithmetic: ${compared.toLocaleString("en")}, different: ` +
         `${different.toLocaleString("en")}.`;
+      if (line.textContent !== text) line.textContent = text;
       line.className = different ? "wrong" : "";
-      Object.assign(RayCaster.state.room ?? {}, {
+      Object.assign(RayCaster.state.room, {
         compared, different, wrong: checked === frames ? (verdict?.count ?? null) : null,
       });
     };
@@ -364,23 +369,30 @@ tabs.room = {
 
     let shownAt = 0, marked = 0;
     const show = (begun, frame) => {
-      last = { ...frame, camera: begun.camera, version: begun.version, design: begun.drawing.design };
-      draw(canvas, frame.pixels, last.design);
+      const { drawing, camera, version } = begun, { pixels, clocks, runs } = frame;
+      last = { ...frame, camera, version, drawing, design: drawing.design };
+      draw(canvas, pixels, last.design);
       frames++;
       checks.offer(frame, last.design, frames);
       const now = performance.now(), speed = 1000 / (now - shownAt);
       shownAt = now;
       // The first frame after a pause has no speed.
       if (speed > SLOWEST) rate = rate ? 0.9 * rate + 0.1 * speed : speed;
-      report(last, begun.drawing);
-      drawPlans();
+      RayCaster.state.room = {
+        get hash() {
+          return pictureHash(pixels);
+        },
+        clocks, runs, frames, rate, version, camera, model: drawing.name, wrong: null,
+      };
+      if (now - reportedAt > REPORTING) report();
     };
     const rest = () => {
       if (checks.last === frames && marked !== frames && checks.verdict?.count) {
         mark(canvas, checks.verdict.wrong, "#ff00ff");
         marked = frames;
       }
-      if (RayCaster.state.room) reportChecks();
+      if (reported !== frames) report();
+      else if (frames) reportChecks();
     };
 
     const frameAfterFrame = async () => {
