@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A machine whose loop reads runs; see drawing.v.
 //
-// COLOUR_BITS: bits per channel of a run's colour.
+// COLOUR_BITS: bits per channel of a run's colour. DIRECT: 1 if nothing but the rising edges of the clocks triggers the
+// model, which then does without the rest of Verilator's evaluation while a frame is drawn.
 
 #ifndef DRAWING_H
 #define DRAWING_H
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "Vmachine.h"
+#include "Vmachine___024root.h"
 
 #define CLOCKS_PER_BIT 0 // of a serial port: none
 
@@ -29,7 +31,7 @@ public:
         top.skipped = 0;
         top.stride = 1;
         top.reset = 1;
-        top.clk = 0;
+        top.clk = top.bus_clk = top.fetch_clk = 0;
         for (int count = 0; count < RESET_CLOCKS; count++) clock();
         top.reset = 0;
     }
@@ -70,8 +72,11 @@ public:
         while (top.busy) {
             working += top.working;
             if (top.run_valid) keep(top.run);
-            clock();
+            draw_clock(top.fetches);
         }
+#if DIRECT
+        top.rootp->__VnbaTriggered[0] = 0;
+#endif
     }
 
 private:
@@ -95,12 +100,44 @@ private:
     }
 
     void clock() {
-        top.clk = 1;
-        top.eval();
-        top.clk = 0;
-        top.eval();
+        rise(1, 1, 1);
         clocks++;
     }
+
+    // Runs a clock in which the bus is idle.
+    void draw_clock(bool fetches) {
+#if DIRECT
+        top.rootp->__VnbaTriggered[0] = fetches ? fetching : drawing;
+        Vmachine___024root___eval_nba(top.rootp);
+#else
+        rise(1, 0, fetches);
+#endif
+        clocks++;
+    }
+
+    void rise(int clk, int bus_clk, int fetch_clk) {
+        top.clk = clk;
+        top.bus_clk = bus_clk;
+        top.fetch_clk = fetch_clk;
+        top.eval();
+        top.clk = top.bus_clk = top.fetch_clk = 0;
+        top.eval();
+    }
+
+#if DIRECT
+    // What rising edges trigger, of the clock alone and with that of the memory of the rectangles.
+    const uint64_t drawing = triggered(0), fetching = triggered(1);
+
+    uint64_t triggered(int fetch_clk) {
+        top.clk = 1;
+        top.fetch_clk = fetch_clk;
+        Vmachine___024root___eval_triggers_vec__act(top.rootp);
+        const uint64_t bits = top.rootp->__VactTriggered[0];
+        top.clk = top.fetch_clk = 0;
+        Vmachine___024root___eval_triggers_vec__act(top.rootp);
+        return bits;
+    }
+#endif
 };
 
 #endif

@@ -3,11 +3,16 @@
 // there is no monitor: the modules `video_generator` and `frame_list` here take the place of the design's own. So a
 // frame takes only the clocks of its drawing. Several machines with the same scene share a frame's rows.
 //
+// Two parts of the design have clocks of their own, which the loop stops while they would change nothing: registers that
+// only the bus and `begins` change have `bus_clk`, and the memory of the rectangles has `fetch_clk`.
+//
 // ADDRESS_BITS: width of the bus's addresses; ENTRY_BITS: width of a run, its end above its colour; ROWS: rows of a
 // frame; COLOUR_BITS: bits per channel.
 
 module machine (
     input  wire                     clk,
+    input  wire                     bus_clk,        // rises with clk, except while busy
+    input  wire                     fetch_clk,      // rises with clk, except while busy without `fetches`
     input  wire                     reset,
     input  wire                     host_read,      // read and write are held until accepted
     input  wire                     host_write,
@@ -21,6 +26,7 @@ module machine (
     input  wire [7:0]               stride,         // from one of its rows to the next
     output wire                     busy,           // drawing, from the clock after `begins` on
     output wire                     working,        // its unit draws a row
+    output wire                     fetches,        // a rectangle is read with this clock
     output wire                     run_valid,      // a run is taken with this clock
     output wire [`ENTRY_BITS-1:0]   run,
     output wire [15:0]              row             // row of the run
@@ -49,6 +55,7 @@ ray_caster_module ray_caster_module_i (
 );
 
 `define LIST ray_caster_module_i.span_renderer_i.frame_list_i
+assign fetches = ray_caster_module_i.rects_fetch;
 assign busy = `LIST.busy;
 assign working = `LIST.working;
 assign run_valid = `LIST.valid;

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import importlib.metadata
+import re
 import sys
+from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -17,7 +19,15 @@ from raycaster.play.machine import SIGNS, TOP, MachineSources, machine_sources
 from raycaster.registers import address_bits
 from raycaster.rtl.common.widths import column_bits
 from raycaster.runs.tools import TIMEOUT, ToolError, run_program
-from raycaster.sim.simulator import VERILATED_DEFINITIONS, find_tool, library_sources, made, models, verilate
+from raycaster.sim.simulator import (
+    VERILATED_DEFINITIONS,
+    SimulationError,
+    find_tool,
+    library_sources,
+    made,
+    models,
+    verilate,
+)
 from raycaster.web.taps import tapped_signals, taps_verilog
 
 HERE = Path(__file__).parent
@@ -30,6 +40,15 @@ DRAWING = tuple(HERE / name for name in ("drawing.v", "drawing.h"))
 
 REPLACED = ("frame_list", "video_generator")
 """Modules of the design that the bench of a drawing replaces."""
+
+CLOCKED = {
+    "bus_clk": ("avalon_interface", "camera_mem", "frame_registers", "rect_slot"),
+    "fetch_clk": ("rect_mem",),
+}
+"""Modules that a drawing clocks apart from the others, by their clock in the bench."""
+
+DIRECT = ("__VactTriggered[0U]", "__VnbaTriggered[0U]", "___eval_triggers_vec__act(", "___eval_nba(")
+"""Parts of Verilator's model that `drawing.h` uses if they are there."""
 
 SOFTWARE = Path(raycaster.sw.__path__[0])
 DRIVER = SOFTWARE / "raycaster.c"
@@ -85,7 +104,7 @@ def machine_wasm(
     tapped = (f"-DTAPS={len(tapped_signals(config, 0))}",) if taps else ()
     flags = (*design.flags, *tapped)
     defines = (*tapped, *design.defines, f"-DWHOLE_FRAMES={int(config.facts.whole_frames and not draws)}")
-    made_with = (tool, _compiler(), flags, defines, text)
+    made_with = (tool, _compiler(), flags, defines, text, DIRECT)
     header = DRAWING[1] if draws else MACHINE_HEADER
     sources = [*design.files, *MACHINE, header, SIGNS, DRIVER, *DRIVER_HEADERS]
     name = f"{design.name}-tapped" if taps else design.name
@@ -97,12 +116,13 @@ def machine_wasm(
                 files.append(directory / "taps.v")
                 files[-1].write_text(text)
             verilate(tool, directory, TOP, files, flags, MACHINE[:2])
+            direct = (f"-DDIRECT={int(draws and is_direct(directory))}",)
             library = library_sources(tool)
             includes = (directory, HERE, header.parent, SOFTWARE, library, library / "vltstd")
             _link(
                 directory, TOP, WASI, "-mexec-model=reactor",
                 # The driver is C, which allows narrowing conversions.
-                "-std=gnu++20", "-Wno-c++11-narrowing", "-fno-exceptions", *VERILATED_DEFINITIONS, *defines,
+                "-std=gnu++20", "-Wno-c++11-narrowing", "-fno-exceptions", *VERILATED_DEFINITIONS, *defines, *direct,
                 *(f"-I{path}" for path in includes), "-include", HERE / "bus.h", "-include", HERE / "shim.h",
                 "-include", SIGNS, "-x", "c++", "all.cc", DRIVER,
             )  # fmt: skip
@@ -112,7 +132,12 @@ def machine_wasm(
 def drawing_sources(config: Configuration, build: Path = BUILD) -> MachineSources:
     """Convert a design of whole frames, to be run without a monitor; see `drawing.v`."""
     driven = machine_sources(config, build, processor=False)
-    files = [path for path in driven.files[:-1] if path.stem not in REPLACED]
+    originals = [path for path in driven.files[:-1] if path.stem not in REPLACED]
+    with made(build / "model" / config.name, "drawing", originals, CLOCKED) as (directory, fresh):
+        if fresh:
+            for name, text in _clocked(originals).items():
+                (directory / name).write_text(text)
+        files = [copy if (copy := directory / path.name).exists() else path for path in originals]
     flags = [flag for flag in driven.flags if not flag.startswith("-G")]
     entry_bits = column_bits(config) + 3 * config.colour_bits
     sizes = (
@@ -121,6 +146,35 @@ def drawing_sources(config: Configuration, build: Path = BUILD) -> MachineSource
     )  # fmt: skip
     defines = ("-DDRAWING", f"-DCOLOUR_BITS={config.colour_bits}")
     return MachineSources(f"{config.name}-drawing", (*files, DRAWING[0]), (*flags, *sizes), defines)
+
+
+def _clocked(files: Sequence[Path]) -> dict[str, str]:
+    """Return the modules that instantiate those of `CLOCKED`, with the bench's clocks at these instances, by file name.
+
+    Raises:
+        SimulationError: nothing instantiates one of the modules.
+    """
+    texts = {path.name: path.read_text() for path in files}
+    changed = {}
+    for clock, modules in CLOCKED.items():
+        for module in modules:
+            instance = re.compile(rf"^({module}(?:_\d+)? \w+ \(\n    \.clk\()clk\)", re.MULTILINE)
+            found = [name for name, text in texts.items() if instance.search(text)]
+            if not found:
+                raise SimulationError(f"{files[0].parent}: no module instantiates {module} with clk first")
+            for name in found:
+                texts[name] = changed[name] = instance.sub(rf"\1{TOP}.{clock})", texts[name])
+    return changed
+
+
+def is_direct(directory: Path) -> bool:
+    """Check that a drawing's model is one of those that `drawing.h` evaluates itself.
+
+    Its triggers must be the rising edges of its clocks, and `DIRECT` must be in it, as in Verilator 5.48.
+    """
+    text = "".join(path.read_text() for path in sorted(directory.glob(f"V{TOP}___024root*")))
+    triggers = set(re.findall(r"\b__Vtrigprevexpr_\w+?__(\w+?)__\d+;", text))
+    return triggers == {"clk", *CLOCKED} and all(part in text for part in DIRECT)
 
 
 def golden_wasm(build: Path = BUILD) -> Path:

@@ -23,7 +23,8 @@ from raycaster.scene import Camera, Scene, SceneError, load_scene, packaged_scen
 from raycaster.screens import LIST_SCREENS, SCREENS, Screen
 from raycaster.sw.firmware import build_firmware
 from raycaster.sw.play_script import DEMO, load
-from raycaster.web.site import MODELS, write_site
+from raycaster.web.site import MODELS, packed, write_site
+from raycaster.web.wasm import is_direct, machine_wasm
 
 ROOM, TINY = (configure(**PAGE_MODELS[name]).screen_geometry for name in ("plain", "exact"))
 VGA = SCREENS["vga", 240]
@@ -40,6 +41,19 @@ TOUR = """async ([model, source, cameras]) => {
     for (const camera of cameras) frames.push(await machine.frame({ camera }));
     machine.end();
     return frames.map((frame) => pictureHash(frame.pixels));
+}"""
+
+DRAWN = """async ([model, sources]) => {
+    const drawing = await Drawing.start(model, 3), frames = [];
+    for (const source of sources) {
+        const scene = readScene(source, "scene", drawing.design.rectangles);
+        for (const yaw of [0, 100, -130]) {
+            const camera = { ...scene.camera, basis: RayCasterScene.basis(yaw, 10, 0) };
+            frames.push(await drawing.frame(yaw ? { camera } : { scene }));
+        }
+    }
+    drawing.end();
+    return frames.map(({ pixels, clocks, runs, words }) => [pictureHash(pixels), clocks, runs, words.join()]);
 }"""
 
 GAME = """async (held) => {
@@ -133,6 +147,26 @@ def test_a_tour(page, request, model, name, count, screen):
     assert len(set(expected)) > count // 2
     views = [{"position": camera.position, "basis": camera.basis} for camera in cameras[1:]]
     assert page.evaluate(TOUR, [model, packaged_scenes()[name].read_text(), views]) == expected
+
+
+def test_stopped_clocks_change_nothing(page, site, monkeypatch):
+    """A model whose clocks never stop, evaluated as usual, draws the same runs in the same clocks, after each write."""
+    opened(page, (site / "index.html").as_uri())
+    page.evaluate("RayCaster.model('full')")
+    wasms = [machine_wasm(configure(**PAGE_MODELS["full"]), draws=True, build=BUILD)]
+    assert is_direct(wasms[0].parent)
+    monkeypatch.setattr("raycaster.web.wasm.CLOCKED", {})
+    monkeypatch.setattr("raycaster.web.wasm.DIRECT", ("no such part",))
+    wasms.append(machine_wasm(configure(**PAGE_MODELS["full"]), draws=True, build=BUILD))
+    assert not is_direct(wasms[1].parent)
+    names = ["lamplight", "mirror_room", "shadow_hall", "kaleidoscope", "pool", "colonnade"]
+    sources, frames = [packaged_scenes()[name].read_text() for name in names], []
+    for wasm in wasms:
+        model = packed(wasm.read_bytes())
+        page.evaluate("(wasm) => (RayCaster.models.one = { ...RayCaster.models.full, wasm }, 0)", model)
+        frames.append(page.evaluate(DRAWN, ["one", sources]))
+    assert frames[0] == frames[1]
+    assert len({picture for picture, *_ in frames[0]}) > 2 * len(names)
 
 
 @pytest.mark.slow
