@@ -22,9 +22,10 @@ from raycaster.design.decide import configure
 from raycaster.design.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, configuration_of
+from raycaster.fpga.bitstream import figures_of, read_report, show
 from raycaster.fpga.board import OpenBoard, QuartusBoard, board_names, find_board
 from raycaster.fpga.cells import FAMILIES, Area, Family, measure, measure_modules
-from raycaster.fpga.flows import ECP5_EFFORT, FLOWS, place_and_route
+from raycaster.fpga.flows import ECP5_EFFORT, FLOWS, SYSTEM_CLOCK, Clocks, place_and_route
 from raycaster.fpga.netlist import write_netlist
 from raycaster.output import Console, Table
 from raycaster.rtl.engines import ENGINES, SPAN
@@ -122,17 +123,17 @@ def show_chips(areas: Mapping[str, Area], console: Console) -> None:
     console.print(table)
 
 
-def route(config: Configuration, seed: int, directory: Path) -> dict[str, Any]:
-    """Place and route the module alone, on an LFE5U-85F-6, with a pad at each port.
+def route(config: Configuration, seed: int, directory: Path, console: Console) -> dict[str, Any]:
+    """Place and route the module alone, on an LFE5U-85F-6, with a pad at each port; print cells, clock and worst path.
 
     Args:
         config: configuration of the design.
         seed: seed of the placement.
         directory: directory, which is replaced; keeps the netlist and nextpnr's reports.
+        console: console for the tables.
 
     Returns:
-        Figures: the used and available cells by kind, the reached and the aimed at frequency in MHz, and the worst
-        path's steps, each with its delay in ns and the net or the cell that it goes through.
+        Figures as those of a bitstream, and the worst path's steps: the delay in ns, and the net or the cell.
 
     Raises:
         UserError: a program is missing, or failed.
@@ -150,30 +151,17 @@ def route(config: Configuration, seed: int, directory: Path) -> dict[str, Any]:
     done = place_and_route([*command, "--freq", str(aim), "--seed", str(seed)], flow.again, directory)
     if done.returncode:
         raise UserError(f"{done.args[0]}: it failed; the log is {directory / 'nextpnr.log'}")
-    return {"seed": seed, **_routed(json.loads((directory / "report.json").read_text()), flow.cells, aim)}
-
-
-def _routed(report: Mapping[str, Any], kinds: Sequence[str], aim: float) -> dict[str, Any]:
-    """Return the figures of nextpnr's report on a design with one clock."""
-    [clock] = report["fmax"].values()
-    [path] = [one["path"] for one in report["critical_paths"] if "async" not in one["from"] + one["to"]]
-    cells = [[report["utilization"][kind][key] for key in ("used", "available")] for kind in kinds]
-    steps = [[round(step["delay"], 2), step["net"] if "net" in step else step["to"]["cell"]] for step in path]
-    names = "logic", "registers", "multipliers", "memories"
-    return {"cells": dict(zip(names, cells, strict=True)), "clock": [round(clock["achieved"], 2), aim], "path": steps}
-
-
-def show_route(figures: Mapping[str, Any], console: Console) -> None:
-    """Print the cells, the clock and the worst path of a routed module."""
-    table = Table("cell", "used", "available", title=f"{find_board(ROUTED, OpenBoard).chip}, seed {figures['seed']}")
-    for kind, (used, available) in figures["cells"].items():
-        table.add_row(kind, used, available)
-    console.print(table)
+    report = directory / "report.json"
+    outcome = read_report(flow, Clocks({}, {SYSTEM_CLOCK: aim}), report, {})
+    show(board, outcome, console)
+    paths = json.loads(report.read_text())["critical_paths"]
+    [path] = [one["path"] for one in paths if "async" not in one["from"] + one["to"]]
+    steps = [(round(step["delay"], 2), step.get("net", step["to"]["cell"])) for step in path]
     table = Table("ns", "through", title="worst path")
-    for delay, name in figures["path"]:
+    for delay, name in steps:
         table.add_row(f"{delay:.2f}", name)
     console.print(table)
-    console.print("clock: {:.2f} of {:g} MHz".format(*figures["clock"]))
+    return {**figures_of(board, config, seed, outcome), "title": "Module alone", "path": steps}
 
 
 def command_parser() -> CommandParser:
@@ -220,8 +208,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, console)
     announce("area --route" if arguments.route else "area")
     if arguments.route:
-        figures = {"configuration": config.name, **route(config, arguments.seed, arguments.output / config.name)}
-        show_route(figures, console)
+        figures = route(config, arguments.seed, arguments.output / config.name, console)
         keep(arguments, figures, verilog, left_out="pins, and the paths to and from them")
         return
     families = [FAMILIES[arguments.family]] if arguments.family else list(FAMILIES.values())

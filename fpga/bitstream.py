@@ -243,7 +243,7 @@ def make_bitstream(
                 raise UserError(f"{done.args[0]}: {reason}; the log is {log}")
             seconds[description] = round(time.monotonic() - start, 1)
             progress.advance(task)
-        outcome = _read_report(flow, clocks_for(board, design.configuration), work / "report.json", seconds)
+        outcome = read_report(flow, clocks_for(board, design.configuration), work / "report.json", seconds)
         (work / "result.json").write_text(json.dumps(vars(outcome), indent=2) + "\n")
     return outcome
 
@@ -254,7 +254,8 @@ def synthesise(board: OpenBoard, design: Design | ProcessorDesign, work: Path) -
     return write_netlist(FLOWS[board.flow], sources, board.name, board.multipliers, work)
 
 
-def _read_report(flow: Flow, wanted: Clocks, path: Path, seconds: Mapping[str, float]) -> Outcome:
+def read_report(flow: Flow, wanted: Clocks, path: Path, seconds: Mapping[str, float]) -> Outcome:
+    """Read nextpnr's report on a design with the wanted clocks."""
     report = json.loads(path.read_text())
     clocks = {}
     for net, required in wanted.nets.items():
@@ -292,6 +293,16 @@ def show(board: OpenBoard, outcome: Outcome, console: Console) -> None:
         verdict = "MISSED" if name in outcome.missed else "met"
         table.add_row(name, f"{reached:.2f} {unit}", f"{required:.2f} {unit}", verdict)
     console.print(table)
+
+
+def figures_of(board: OpenBoard, config: Configuration, seed: int, outcome: Outcome) -> dict[str, Any]:
+    """Return the figures of a routed design that are kept."""
+    kinds = zip(("logic", "registers", "multipliers", "memories"), FLOWS[board.flow].cells, strict=True)
+    return {
+        "configuration": config.name, "title": board.title, "chip": board.chip, "seed": seed,
+        "missed": outcome.missed, "crossings": dict(outcome.crossings), "kinds": dict(kinds),
+        "cells": dict(outcome.cells), "clocks": dict(outcome.clocks),
+    }  # fmt: skip
 
 
 def command_parser() -> CommandParser:
@@ -381,16 +392,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     design = _design(arguments, board, console)
     outcome = make_bitstream(board, design, output, seed=arguments.seed, console=console)
     show(board, outcome, console)
-    figures = {
-        "configuration": design.configuration.name,
-        "board": board.name,
-        "title": board.title,
-        "chip": board.chip,
-        "seed": arguments.seed,
-    }
-    figures |= {"missed": outcome.missed, "crossings": dict(outcome.crossings)}
-    figures |= {"kinds": dict(zip(("logic", "registers", "multipliers", "memories"), flow.cells, strict=True))}
-    figures |= {"cells": dict(outcome.cells), "clocks": dict(outcome.clocks)}
+    figures = {"board": board.name, **figures_of(board, design.configuration, arguments.seed, outcome)}
     figures |= {name: getattr(design.configuration, name) for name in ("rectangles", "rows", "units", "reflections")}
     keep(arguments, figures, verilog, left_out="a run on the board")
     if outcome.missed:
