@@ -117,7 +117,7 @@ def _written(file: str, value: CodeType) -> tuple[Any, CodeType]:  # equal code 
     calls = _calls("".join(inspect.findsource(value)[0])).get(value.co_firstlineno, [])
     if len(calls) != 1:
         raise SyntaxError("expected one lambda in a line", (file, value.co_firstlineno, 0, ""))
-    [call] = calls
+    [(name, call)] = calls
     place = next(index for index, one in enumerate(call.args) if isinstance(one, ast.Lambda))
     target, function, *conditions = call.args[place - 1 :]
     driven: Any = ast.Attribute(target, "next", ast.Store())
@@ -127,7 +127,7 @@ def _written(file: str, value: CodeType) -> tuple[Any, CodeType]:  # equal code 
     around = [node.id for one in (target, *conditions) for node in ast.walk(one) if isinstance(node, ast.Name)]
     arguments = [ast.arg(name) for name in sorted({*value.co_freevars, *around})]
     none: Any = ast.arguments([], [], None, [], [], None, [])
-    process = ast.FunctionDef(around[0], none, [statement], [])
+    process = ast.FunctionDef(name or around[0], none, [statement], [])
     block = ast.FunctionDef("block", ast.arguments([], arguments, None, [], [], None, []), [process], [])
     tree: Any = ast.Module([process], [])
     for node in (process, block):
@@ -140,13 +140,15 @@ def _written(file: str, value: CodeType) -> tuple[Any, CodeType]:  # equal code 
 
 
 @functools.cache
-def _calls(source: str) -> dict[int, list[Any]]:
-    """Return all calls with a lambda, by the line of the lambda."""
-    found: dict[int, list[Any]] = {}
-    for node in ast.walk(ast.parse(source)):
+def _calls(source: str) -> dict[int, list[tuple[str, Any]]]:
+    """Return all calls with a lambda, each with the variable that it is assigned to, by the line of the lambda."""
+    found: dict[int, list[tuple[str, Any]]] = {}
+    nodes: list[Any] = [*ast.walk(ast.parse(source))]
+    names = {node.value: getattr(node.targets[0], "id", "") for node in nodes if isinstance(node, ast.Assign)}
+    for node in nodes:
         for function in node.args if isinstance(node, ast.Call) else ():
             if isinstance(function, ast.Lambda):
-                found.setdefault(function.lineno, []).append(node)
+                found.setdefault(function.lineno, []).append((names.get(node, ""), node))
     return found
 
 
