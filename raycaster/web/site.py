@@ -7,6 +7,7 @@ import base64
 import gzip
 import io
 import json
+import re
 import shutil
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -37,7 +38,7 @@ from raycaster.rtl.engines import ENGINES, SEED, SPAN
 from raycaster.runs.jobs import processes, run_jobs
 from raycaster.runs.outcomes import RESULTS, kept_outcome
 from raycaster.scene import COMPLAINTS, PATTERN_KEYS, PATTERNS, Scene, load_scene, packaged_scenes
-from raycaster.screens import SCREENS
+from raycaster.screens import LIST_SCREENS, SCREENS
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
 from raycaster.web.taps import tap_facts
@@ -59,6 +60,12 @@ WALK_SPEED, TURN_SPEED = 120, 90
 
 BROWSER_KEYS = {name: f"arrow{name}" for name in ("left", "right", "up", "down")} | {"space": " ", "return": "enter"}
 """Browser's names of keys, by the window's name where the two differ."""
+
+
+_ROUTED = re.compile(
+    rf"{SPAN.facts.name}-(?P<screen>[a-z]+).*-s(?P<scale>\d+)-.*-l(?P<list>\d+)-c\d+(?P<features>(-({'|'.join(FEATURES)}))*)"
+)
+"""Name of a design that draws whole frames of any scene."""
 
 
 @dataclass(frozen=True)
@@ -182,7 +189,8 @@ def _settings(models: Sequence[Model], *, test: bool) -> dict[str, Any]:
 def _cost(path: Path = RESULTS / "features.json") -> dict[str, Any] | None:
     """Return the cells of `ROOM_DESIGNS` on an ECP5, as last measured, and what the open boards have.
 
-    `runs` of a board are the entries of the longest list for which it has memory, by design. None where no figures are
+    `runs` of a board are the entries of the longest list for which it has memory, by design. `routed` is the design
+    without a bus for any scene that was placed and routed for the board, if there is one. None where no figures are
     kept, as in an installed program.
     """
     if not path.exists():
@@ -193,12 +201,23 @@ def _cost(path: Path = RESULTS / "features.json") -> dict[str, Any] | None:
         name: {key: row[key] for key in ("tables", "registers", "multipliers")}
         for name, options in ROOM_DESIGNS.items() for row in counted if row["options"] == options
     }  # fmt: skip
+    routed = {}
+    for kept_path in sorted(path.parent.glob("bitstream-*.json")):
+        figures = kept_outcome(kept_path).figures
+        if design := _ROUTED.fullmatch(figures["configuration"]):
+            screen = LIST_SCREENS[design["screen"], figures["rows"]].scaled(int(design["scale"]))
+            routed[figures["board"]] = {
+                "features": design["features"].split("-")[1:], "columns": screen.columns, "runs": int(design["list"]),
+                "cells": figures["cells"][figures["kinds"]["logic"]],
+                **{name: figures[name] for name in ("rectangles", "reflections")},
+            }  # fmt: skip
     boards = [find_board(name, OpenBoard) for name in board_names(OpenBoard)]
     designs = {name: configure(engine=SPAN.facts.name, **options) for name, options in ROOM_DESIGNS.items()}
     return {"date": kept.date, "rooms": rooms, "boards": [
         {
             "title": board.title.partition(",")[0], "elements": board.elements, "multipliers": board.multipliers,
             "runs": {name: largest_list(board, config) for name, config in designs.items()},
+            "routed": routed.get(board.name),
         }
         for board in boards
     ]}  # fmt: skip

@@ -233,6 +233,13 @@ def test_clocks_are_the_hardware_s(room):
     [cells] = [row for row in kept if row["engine"] == "span" and row["options"] == ROOM_DESIGNS["plain"]]
     assert f"{cells['tables']:,} look-up tables" in cost
     assert "Boards with room for it and for this frame: Colorlight i9, " in cost
+    routed = json.loads((RESULTS / "bitstream-icebreaker-span.json").read_text())["figures"]
+    used, cells = routed["cells"]["ICESTORM_LC"]
+    assert f"{routed['title']} draws it too, with {used:,} of {cells:,} logic cells." in cost
+    room.focus("#room-picture")
+    room.keyboard.down("ArrowLeft")
+    room.wait_for_function("!find('room-cost').textContent.includes('iCEBreaker')")
+    room.keyboard.up("ArrowLeft")
 
 
 def test_a_planted_pixel_is_counted(room):

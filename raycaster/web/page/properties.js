@@ -93,7 +93,7 @@ class Properties {
 }
 
 // Say what hardware for rooms like this one takes, and which boards have it.
-function cellsText(model, runs) {
+function cellsText(model, { runs, camera }, { columns }, { needs, reflections, rect }) {
   const { rooms, boards, date } = RayCaster.cost ?? {};
   const { design: name } = RayCaster.walk.models.find(({ name }) => name === model), cells = rooms?.[name];
   if (!cells) return "";
@@ -101,16 +101,25 @@ function cellsText(model, runs) {
     ({ elements, multipliers, runs: most }) =>
       cells.tables <= FULLEST * elements && cells.multipliers <= multipliers && runs <= most[name],
   ).map(({ title }) => title);
+  const turn = JSON.stringify(camera.basis) !== JSON.stringify(RayCasterScene.basis(0, 0, 0));
+  const able = boards.filter(({ title, routed }) => routed && !titles.includes(title) && columns <= routed.columns &&
+    runs <= routed.runs && rect.length <= routed.rectangles && reflections <= routed.reflections &&
+    Object.entries({ ...needs, turn }).every(([look, isNeeded]) => !isNeeded || routed.features.includes(look)));
+  const others = able.map(({ title, routed: { cells: [used, all] } }) =>
+    ` The design that was placed and routed for the ${title} draws it too, with ${used.toLocaleString("en")} of ` +
+    `${counted(all, "logic cell")}.`);
   return ` The ${name} design for 640 x 480 monitors takes ${counted(cells.tables, "look-up table")}, ` +
     `${counted(cells.registers, "register")} and ${counted(cells.multipliers, "multiplier")} of an ECP5 (counted before ` +
-    `placing, ${date}). Boards with room for it and for this frame: ${titles.join(", ") || "none of those described here"}.`;
+    `placing, ${date}). Boards with room for it and for this frame: ${titles.join(", ") || "none of those described here"}.` +
+    others.join("");
 }
 
 // Say how fast hardware with one unit draws this frame, which takes it as many clocks as here, and how to make it.
-function showCost(frame, model, { columns, rows, scale }, { needs, reflections, rect }) {
+function showCost(frame, model, design, scene) {
+  const { columns, rows, scale } = design, { needs, reflections, rect } = scene;
   const rates = CLOCKS.map((clock) => `${((clock * 1e6) / frame.clocks).toFixed(0)} at ${clock} MHz`).join(", ");
   find("room-cost").textContent = `Hardware with one unit of the span engine draws this frame of ${columns} x ${rows} in ` +
-    `${counted(frame.clocks, "clock")}. Frames per second: ${rates}.${cellsText(model, frame.runs)} Its Verilog:`;
+    `${counted(frame.clocks, "clock")}. Frames per second: ${rates}.${cellsText(model, frame, design, scene)} Its Verilog:`;
   const looks = ["materials", "patterns", "light"].filter((look) => needs[look]).map((look) => ` ${look.toUpperCase()}=1`);
   find("room-command").textContent =
     `make verilog ENGINE=span SCALE=${scale} TURN=1${looks.join("")} REFLECTIONS=${reflections} RECTANGLES=${rect.length}`;
