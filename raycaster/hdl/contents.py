@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import inspect
 import re
 from collections.abc import Collection, Mapping
@@ -201,7 +202,7 @@ class Contents:
                 begun = [part.symdict[name] for name in (*part.outputs, *part.outmems)]
                 self.starting |= {id(one) for one in begun if not isinstance(one, Unset)}
             known = all(isinstance(part.sigdict[name], (Tied, Constant)) for name in part.inputs)
-            if internals.is_combinational(part) and known and not part.hasLos:
+            if internals.is_combinational(part) and kind == "reg" and known and not part.hasLos:
                 reason = "reads constants only, and Verilog would never run it; compute their values outside of it"
                 self._refuse(f"{part.name} {reason}", part.name)
             if not internals.keeps(part):
@@ -426,6 +427,7 @@ def check_keyword(block: Block, name: str, vhdl: bool = False) -> None:
         raise refusal(block, f"{name} has letters that Verilog does not know; rename it", name)
 
 
+@functools.cache
 def _is_keyword(name: str) -> bool:
     kind, _ = next(SystemVerilogLexer().get_tokens(name))
     return kind in Keyword or kind in Operator or name in ("class", "extends")  # which Pygments takes with a name only

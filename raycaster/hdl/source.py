@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterable
 from itertools import pairwise
 from types import FunctionType
 from typing import Any
@@ -34,6 +35,12 @@ def prepare(tree: Any) -> None:
             tree.symdict[name] = tuple(value)
         elif isinstance(value, FunctionType):
             tree.symdict[name] = _opened(value)
+
+
+def joined(op: ast.boolop, values: Iterable[bool | None]) -> bool | None:
+    """Return the truth of `and` or `or`, None if it is unknown, as that of an operand may be."""
+    known, ends = [*values], isinstance(op, ast.Or)
+    return ends if ends in known else None if None in known else not ends
 
 
 def _opened(function: FunctionType) -> FunctionType:
@@ -112,8 +119,7 @@ class _Decided(ast.NodeTransformer):
     def _decide(self, test: ast.expr) -> bool | None:
         """Return the truth of a condition, None if a signal or a variable decides it."""
         if isinstance(test, ast.BoolOp):
-            parts, ends = [*map(self._decide, test.values)], isinstance(test.op, ast.Or)
-            return ends if ends in parts else None if None in parts else not ends
+            return joined(test.op, map(self._decide, test.values))
         if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
             inner = self._decide(test.operand)
             return None if inner is None else not inner
@@ -161,18 +167,20 @@ def _is_plain(value: Any) -> bool:
 
 def _check(tree: Any) -> None:
     for node in ast.walk(tree):
-        text = f"Verilog has no {ast.unparse(node).partition(chr(10))[0]}; write it otherwise"
-        at: Any = node.targets[0] if isinstance(node, ast.Assign) else getattr(node, "target", None)
-        while isinstance(at, (ast.Attribute, ast.Subscript)):
-            at = at.value
-        if isinstance(node, (ast.Assign, ast.AugAssign)) and not isinstance(at, ast.Name):
-            text = f"Verilog has no assignment to {ast.unparse(at)}; assign to one signal or variable at a time"
-        elif isinstance(node, ast.ListComp):
-            text = (
-                f"a process has no list of its own in Verilog; make {ast.unparse(node)} a list of signals outside of it"
-            )
-        elif isinstance(node, ast.MatchSingleton):
-            text = f"a signal never is {node.value}, even if it equals it; write case 1 and case 0"
-        elif not isinstance(node, (ast.AnnAssign, ast.NamedExpr, ast.With, ast.Delete)):
-            continue
+        match node:
+            case ast.Assign(targets=[at, *_]) | ast.AugAssign(target=at):
+                while isinstance(at, (ast.Attribute, ast.Subscript)):
+                    at = at.value
+                if isinstance(at, ast.Name):
+                    continue
+                text = f"Verilog has no assignment to {ast.unparse(at)}; assign to one signal or variable at a time"
+            case ast.ListComp():
+                made = ast.unparse(node)
+                text = f"a process has no list of its own in Verilog; make {made} a list of signals outside of it"
+            case ast.MatchSingleton():
+                text = f"a signal never is {node.value}, even if it equals it; write case 1 and case 0"
+            case ast.AnnAssign() | ast.NamedExpr() | ast.With() | ast.Delete():
+                text = f"Verilog has no {ast.unparse(node).partition(chr(10))[0]}; write it otherwise"
+            case _:
+                continue
         raise SyntaxError(text, (tree.sourcefile, tree.lineoffset + getattr(node, "lineno", 1), 0, ""))
