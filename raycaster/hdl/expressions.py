@@ -23,6 +23,7 @@ from myhdl import concat, intbv
 from raycaster.hdl import internals
 from raycaster.hdl.errors import UserError
 from raycaster.hdl.internals import EnumItemType, ShadowSignal, SignalType, SliceSignal, is_memory, table_of
+from raycaster.hdl.source import joined
 
 INTEGER_BITS = 32
 """Bits of a number, or of an integer variable, in Verilog."""
@@ -92,7 +93,7 @@ class Expressions:
             function_name: returns the name in Verilog of a function, from its tree and the ranges of its arguments.
             arguments: ranges of a function's arguments.
         """
-        self._tree, self._function_name = tree, function_name
+        self._tree, self._function_name, self._state = tree, function_name, internals.state_of(tree)
         self._ranges = dict(arguments)
         self._assumed: dict[str, int] = {}
         self._around: list[Any] = []
@@ -232,8 +233,7 @@ class Expressions:
                 sides = self.constant(left), self.constant(right)
                 return None if None in sides else COMPARED[type(op)](*sides)
             case ast.BoolOp() if self._assumed:
-                values, ends = [*map(self.constant, node.values)], isinstance(node.op, ast.Or)
-                return ends if ends in values else None if None in values else not ends
+                return joined(node.op, map(self.constant, node.values))
             case ast.UnaryOp(op=ast.Not()) if self._assumed:
                 value = self.constant(node.operand)
                 return None if value is None else not value
@@ -312,7 +312,7 @@ class Expressions:
         """
         values: dict[str, list[ast.expr]] = {}
         runs = self._find_assignments(self._tree, 1, (), values)
-        state = values.keys() & internals.state_of(self._tree).keys()
+        state = values.keys() & self._state.keys()
         for name in values:
             self._ranges.setdefault(name, Range(0, 0))
         growth: dict[str, Range] = {}
@@ -889,9 +889,7 @@ class Expressions:
     def _name(self, node: ast.expr, name: str) -> str:
         tree = self._tree
         known = tree.symdict.get(name)
-        if name in tree.argnames or (
-            name in tree.vardict and (name not in tree.nonlocaldict or name in internals.state_of(tree))
-        ):
+        if name in tree.argnames or (name in tree.vardict and (name not in tree.nonlocaldict or name in self._state)):
             return name
         if isinstance(known, SignalType) and internals.has_name(known):
             return str(known)

@@ -13,10 +13,11 @@ from myhdl import ConcatSignal
 from raycaster.hdl import internals
 from raycaster.hdl.contents import Contents, Instance, Loading, check_keyword, is_signed, refusal
 from raycaster.hdl.expressions import Expressions, Range
-from raycaster.hdl.internals import Constant, EnumItemType, SignalType, Statements, operands_of, states_by_name
+from raycaster.hdl.internals import Constant, EnumItemType, SignalType, operands_of, states_by_name
 from raycaster.hdl.port_comments import Comments
 from raycaster.hdl.records import Joined
 from raycaster.hdl.signals import Tied, Unset
+from raycaster.hdl.statements import Statements
 
 LINE_LENGTH = 120
 WHOLE_WORDS: Any = {"break_long_words": False, "break_on_hyphens": False}

@@ -58,7 +58,7 @@ def process(statements: str) -> str:
             for statements, reason in (
                 ("result.next = a in range(1, 3)", "Verilog has no in; write == or != for each value"),
                 ("result.next = a is b", "Verilog has no a is b; decide it outside of the process"),
-                ("print(f'{a}')\nresult.next = a", "MyHDL does not convert f'{a}'; write it otherwise"),
+                ("print(f'{a}')\nresult.next = a", "Verilog has no f'{a}'; write it otherwise"),
                 ("if (n := a + 1) > 3:\n    result.next = n", "Verilog has no (n := (a + 1))"),
                 ("n: int = 3\nresult.next = a ^ n", "Verilog has no n: int = 3"),
                 ("with a:\n    result.next = b", "Verilog has no with a:"),
