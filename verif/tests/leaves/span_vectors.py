@@ -19,12 +19,10 @@ from raycaster.golden.spans import row_slope as golden_slope
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.hdl.signals import bit, tied, unconnected, unsigned
 from raycaster.rtl.common.interfaces import Rects, Vector
-from raycaster.rtl.common.records import Rect
-from raycaster.rtl.common.widths import column_bits, index_bits, level_bits, span_slope_bits, step_bits
+from raycaster.rtl.common.widths import index_bits, level_bits, span_slope_bits
 from raycaster.rtl.span.entry_table import entry_table
 from raycaster.rtl.span.line_desk import line_desk
 from raycaster.rtl.span.records import Aim, Answer, Asks, Entry, count_bits
-from raycaster.rtl.span.records import Chain as ChainRecord
 from raycaster.rtl.span.row_slope import row_slope
 from raycaster.rtl.span.set_up import set_up
 from raycaster.rtl.span.span_unit import span_unit
@@ -83,19 +81,7 @@ def frame_bench(
 ):
     """Draw a row two cycles after first_row, and after each row the one below, with a unit of the span engine.
 
-    Args:
-        clk: the clock.
-        reset: synchronous, active high.
-        store: strobe; stores a rectangle.
-        number: unsigned, `index_bits` bits; read with store.
-        stored: `Rect`; read with store.
-        usable: unsigned, a bit per rectangle.
-        first_row: strobe.
-        camera: `Camera`.
-        picture: `Picture`.
-        run: output `Run`; ready is an input.
-        done: output strobe.
-        config: the design.
+    The ports are those of `stored_rects`, `row_slope` and `span_unit`; the unit's run.ready is an input.
     """
     rects, slope = Rects(config), Vector(span_slope_bits(config))
     table = stored_rects(clk=clk, store=store, number=number, stored=stored, usable=usable, rects=rects, config=config)
@@ -153,33 +139,8 @@ def chain_bench(
 ):  # fmt: skip
     """Set up chains, and sweep over given entries, with the blocks of a span unit.
 
-    Args:
-        clk: the clock.
-        reset: synchronous, active high.
-        store: strobe; stores a rectangle.
-        number: unsigned, `index_bits` bits; read with store.
-        stored: `Rect`; read with store.
-        usable: unsigned, a bit per rectangle.
-        slope: `Vector`.
-        step: `Vector`.
-        chain: `Chain`.
-        begin_set_up: strobe.
-        clear: strobe; forgets the entries for the sweep.
-        give: strobe; adds an entry for the sweep.
-        given: `Entry`; read with give.
-        begin_sweep: strobe.
-        gap: flag.
-        column: unsigned, `column_bits` bits.
-        winner: `Entry`.
-        count: unsigned output, `count_bits` bits.
-        entry: output `Entry`.
-        append: output strobe.
-        set_up_done: output strobe.
-        swept_stop: unsigned output, `column_bits` bits.
-        inherited: output flag.
-        heir: output `Entry`.
-        sweep_done: output strobe.
-        config: the design.
+    The ports are those of `stored_rects`, `set_up`, `sweep` and `line_desk`. clear forgets the entries for the sweep,
+    and give adds one.
     """
     rects, tested, put, answer = Rects(config), Entry(config), Entry(config), Answer(config)
     set_up_asks, sweep_asks = Asks(config), Asks(config)
@@ -225,17 +186,6 @@ def chain_bench(
             known.next = known + 1
 
     return instances()
-
-
-def chain_ports(config: Configuration) -> dict[str, Any]:
-    """Return the ports of `chain_bench`, as `leaf_of` takes them."""
-    width, entries = column_bits(config), ("given", "winner", "entry", "heir")
-    return {
-        "number": index_bits(config), "stored": lambda: Rect(config), "usable": config.rectangles,
-        "slope": lambda: Vector(span_slope_bits(config)), "step": lambda: Vector(step_bits(config)),
-        "chain": lambda: ChainRecord(config), "column": width, "count": count_bits(config), "swept_stop": width,
-        **{name: lambda: Entry(config) for name in entries},
-    }  # fmt: skip
 
 
 def chain_inputs(chain: Chain, axis: int = 0, back: bool = False) -> dict[str, int]:
@@ -384,28 +334,7 @@ def cells_bench(
 ):  # fmt: skip
     """Walk along the cells of patterns, with the blocks of a span unit.
 
-    Args:
-        clk: the clock.
-        reset: synchronous, active high.
-        slope: `Vector`.
-        step_slope: `Vector`.
-        paint: strobe.
-        level: unsigned, `level_bits` bits.
-        kind: unsigned, 2 bits.
-        rect: `Rect`.
-        chain: `Chain`.
-        winner: `Entry`.
-        column: unsigned, `column_bits` bits.
-        stop: unsigned, `column_bits` bits.
-        seen: unsigned, `level_bits` bits.
-        step: flag.
-        place: unsigned, `column_bits` bits.
-        painted: output strobe.
-        odd_u: output flag.
-        odd_v: output flag.
-        next_column: unsigned output, `column_bits` bits.
-        stepped: output strobe.
-        config: the design.
+    The ports are those of `surface_cells`, and the slopes of `line_desk`.
     """
     no_tags = {name: unconnected(1) for name in ("half_line", "last")}
     answer, asks = Answer(config, **no_tags), Asks(config)

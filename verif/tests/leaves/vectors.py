@@ -19,6 +19,7 @@ from raycaster.hdl.signals import Signed, bit, reset_signal, signed, tied, unsig
 from raycaster.registers import address_bits
 from raycaster.rtl.common import interfaces, records, widths
 from raycaster.rtl.engines import engine_of
+from raycaster.rtl.span import records as span
 from raycaster.verif.random_world import EXTREMES
 from raycaster.verif.seeds import repeat
 
@@ -60,6 +61,32 @@ PORTS: dict[str, int | Callable[[Any], Any]] = {
 }
 """Widths and signals of the ports whose names mean the same in most blocks."""
 
+SPAN_PORTS: dict[str, int | Callable[[Any], Any]] = PORTS | {
+    "aim": span.Aim,
+    "answer": span.Answer,
+    "asks": span.Asks,
+    "division": span.Division,
+    "number": lambda config: unsigned(widths.index_bits(config)),
+    "query": span.Query,
+    "run": interfaces.Run,
+    "seen_colour": widths.RGB_BITS,
+    "slope": lambda config: interfaces.Vector(widths.span_slope_bits(config)),
+    "step": lambda config: interfaces.Vector(widths.step_bits(config)),
+    "stored": records.Rect,
+    "usable": lambda config: unsigned(config.rectangles),
+    **dict.fromkeys(("chain", "fan", "folded"), span.Chain),
+    **dict.fromkeys(("entry", "given", "heir", "met", "tested", "winner"), span.Entry),
+    **dict.fromkeys(("frame", "kept"), span.Frame),
+    **dict.fromkeys(("count", "entry_count"), lambda config: unsigned(span.count_bits(config))),
+    **dict.fromkeys(("level", "looked", "seen"), lambda config: unsigned(widths.level_bits(config))),
+    **dict.fromkeys(("seen_share", "weight"), lambda config: unsigned(widths.weight_bits(config))),
+    **dict.fromkeys(
+        ("column", "columns", "left", "next_column", "next_dark", "part_stop", "place", "right", "stop", "swept_stop"),
+        lambda config: unsigned(widths.column_bits(config)),
+    ),
+}
+"""Ports of the span engine's blocks."""
+
 
 class Bench(Leaf):
     """A block with new signals at its ports, its stimulus, and the outputs that are expected.
@@ -67,9 +94,9 @@ class Bench(Leaf):
     Args:
         block: the block.
         directory: scratch space for the Verilog.
-        config: the design, which sizes the ports of `PORTS`.
+        config: the design, which sizes the ports of `PORTS`, or of `SPAN_PORTS` in a design of the span engine.
         given: by name, a port's width (`Signed` for two's complement) or a function that makes its signal; an argument
-            with a type or a default is no port and is passed on. A port that is neither here nor in `PORTS` is a bit.
+            with a type or a default is no port and is passed on. A port that is neither here nor there is a bit.
     """
 
     few: ClassVar[bool] = False
@@ -87,7 +114,8 @@ class Bench(Leaf):
                 return engine_of(config).blocks[name == "unit"]
             if parameter.annotation is not parameter.empty or parameter.default is not parameter.empty:
                 return given[name]
-            made = given.get(name, PORTS.get(name, lambda _: bit()))
+            known = SPAN_PORTS if config is not None and config.facts.whole_frames else PORTS
+            made = given.get(name, known.get(name, lambda _: bit()))
             if isinstance(made, int):
                 return signed(made) if isinstance(made, Signed) else unsigned(made)
             return made() if name in given else made(config)

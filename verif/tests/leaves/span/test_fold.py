@@ -7,9 +7,7 @@ from span_vectors import NOTHING, any_chain, any_slope, chain_inputs, span_confi
 from vectors import by, by_axis, named
 
 from raycaster.golden.spans import ANSWER, Drawing, Entry, Line, Rect, SpanModel
-from raycaster.hdl.signals import bit
-from raycaster.rtl.common.widths import column_bits, level_bits, weight_bits
-from raycaster.rtl.span import records
+from raycaster.rtl.common.widths import column_bits
 from raycaster.rtl.span.chain_stack import chain_stack
 from raycaster.rtl.span.corner_finder import corner_finder
 from raycaster.rtl.span.fold import fold
@@ -24,11 +22,7 @@ def a_rect(random, axis: int, plane: int) -> Rect:
 def test_fold(reflections, leaf_of, random):
     """The mirrored eye, in two's complement, and the axes that are met in one point."""
     config = span_config(screen="tiny", rectangles=4, reflections=reflections)
-    width = column_bits(config)
-    leaf = leaf_of(
-        fold, config, chain=lambda: records.Chain(config), winner=lambda: records.Entry(config), column=width,
-        stop=width, weight=weight_bits(config), folded=lambda: records.Chain(config),
-    )  # fmt: skip
+    leaf = leaf_of(fold, config)
     model = SpanModel(NOTHING, (0, 0, 0), (0, 0, 0), 64, reflections)
     for _ in range(500):
         slope = tuple(Line(*line) for line in zip(*any_slope(random, config), strict=True))
@@ -58,12 +52,7 @@ def test_fold(reflections, leaf_of, random):
 def test_corner_finder(leaf_of, random):
     """Lines that are 0 at both ends of a span, at one of them, or at none, in spans of one column and more."""
     config = span_config(screen="tiny", rectangles=4, reflections=2)
-    width = column_bits(config)
-    leaf = leaf_of(
-        corner_finder, config, start=bit, chain=lambda: records.Chain(config), winner=lambda: records.Entry(config),
-        column=width, stop=width, asks=lambda: records.Asks(config), answer=lambda: records.Answer(config),
-        part_stop=width,
-    )  # fmt: skip
+    leaf = leaf_of(corner_finder, config)
     leaf.case({"reset": 1, "answer_valid": 0})
     seen = set()
     for _ in range(leaf.some(300)):
@@ -106,8 +95,7 @@ def test_corner_finder(leaf_of, random):
 @by(reflections=[1, 2, 4])
 def test_chain_stack(reflections, leaf_of, random):
     config = span_config(screen="tiny", rectangles=4, reflections=reflections)
-    frames = {"kept": lambda: records.Frame(config), "frame": lambda: records.Frame(config)}
-    leaf, stack = leaf_of(chain_stack, config, level=level_bits(config), **frames), []
+    leaf, stack = leaf_of(chain_stack, config), []
     for _ in range(200):
         push = int(len(stack) < reflections and random.random() < 0.6)
         number = int(random.integers(1 << column_bits(config)))

@@ -8,10 +8,8 @@ from span_vectors import any_slope, line_inputs, span_config
 from vectors import basis_inputs, by_axis, named
 
 from raycaster.golden.rays import primary_slopes
-from raycaster.hdl.signals import Signed, bit
-from raycaster.rtl.common.interfaces import Vector
+from raycaster.hdl.signals import Signed
 from raycaster.rtl.common.widths import (
-    column_bits,
     divisor_bits,
     furthest,
     line_bits,
@@ -22,7 +20,6 @@ from raycaster.rtl.common.widths import (
 from raycaster.rtl.span.first_change import division_cycles, first_change
 from raycaster.rtl.span.line_eval import LATENCY, line_eval
 from raycaster.rtl.span.operand_ends import operand_ends
-from raycaster.rtl.span.records import Aim, Answer, Division, Query
 from raycaster.rtl.span.row_slope import row_slope
 from raycaster.rtl.span.slope_start import slope_start
 from raycaster.scene import UNTURNED
@@ -35,7 +32,7 @@ SCREENS = [{"screen": "tiny"}, {"screen": "tiny", "turn": True}, {"rows": 180, "
 def test_row_slope(options, leaf_of, random):
     """The slope of the first column of each row of a screen."""
     config = span_config(**options)
-    leaf, screen = leaf_of(row_slope, config, slope=lambda: Vector(span_slope_bits(config))), config.screen_geometry
+    leaf, screen = leaf_of(row_slope, config), config.screen_geometry
     for frame in range(2 if screen.rows > 100 else 6):
         basis = random_basis(random) if config.turn else UNTURNED
         if frame == 1 and config.turn:
@@ -77,17 +74,9 @@ def test_line_eval(options, leaf_of, random):
     """Lines back to back, with the greatest operands of the screen."""
     config = span_config(**options)
     columns, far = config.screen_geometry.columns, furthest(config)
-    directions = {"slope": lambda: Vector(span_slope_bits(config)), "step": lambda: Vector(step_bits(config))}
     # The greatest slope from the light, which is multiplied by distances within the world, and its greatest change.
     limits = [511 * steepest_slope(config)] * 2 + [2 * far << step_bits(config) - 1]
-    leaf = leaf_of(
-        line_eval,
-        config,
-        query=lambda: Query(config),
-        answer=lambda: Answer(config),
-        aim=lambda: Aim(config),
-        **directions,
-    )
+    leaf = leaf_of(line_eval, config)
     for _ in range(leaf.some(90)):
         slope, step = any_slope(random, config)
         held = by_axis("slope_", slope) | by_axis("step_", step)
@@ -145,10 +134,8 @@ def test_line_eval(options, leaf_of, random):
 def test_operand_ends(turn, leaf_of, random):
     config = span_config(turn=turn)
     columns = config.screen_geometry.columns
-    bits = {"axis": 2, "left": column_bits(config), "right": column_bits(config)}
-    ports = {"slope": lambda: Vector(span_slope_bits(config)), "step": lambda: Vector(step_bits(config))}
     ends = {"at_left": span_slope_bits(config), "at_right": span_slope_bits(config), "growth": step_bits(config)}
-    leaf = leaf_of(operand_ends, config, **bits, **ports, **{name: Signed(width) for name, width in ends.items()})
+    leaf = leaf_of(operand_ends, config, axis=2, **{name: Signed(width) for name, width in ends.items()})
     for _ in range(leaf.some(150)):
         slope, step = any_slope(random, config)
         for _ in range(6):
@@ -173,8 +160,7 @@ def test_first_change(options, leaf_of, random):
     """Lines that rise and fall, to 0 and across it, with the change in any column."""
     config = span_config(**options)
     columns, steepest = config.screen_geometry.columns, (1 << divisor_bits(config) - 1) - 1
-    ports = {"start": bit, "division": lambda: Division(config), "columns": column_bits(config)}
-    leaf, cycles, seen = leaf_of(first_change, config, **ports), division_cycles(config), set()
+    leaf, cycles, seen = leaf_of(first_change, config), division_cycles(config), set()
     leaf.stimulus += [{"reset": 1, "start": 0}, {"reset": 0}]
     for _ in range(leaf.some(400)):
         size = int(random.choice([1, 2, steepest, steepest - 1, int(random.integers(1, steepest + 1))]))
@@ -197,8 +183,7 @@ def test_first_change(options, leaf_of, random):
 
 def test_a_reset_ends_a_division(leaf_of):
     config = span_config(screen="tiny")
-    ports = {"start": bit, "division": lambda: Division(config), "columns": column_bits(config)}
-    leaf, steps = leaf_of(first_change, config, **ports), division_cycles(config) - 1
+    leaf, steps = leaf_of(first_change, config), division_cycles(config) - 1
     leaf.case({"reset": 1, "start": 0, "division_value": -9, "division_growth": 3})
     leaf.stimulus += [{"reset": 0, "start": 1}, *[{"start": 0}] * (steps + 2)]
     whole = leaf.cycle

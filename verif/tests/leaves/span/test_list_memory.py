@@ -9,7 +9,6 @@ from span_vectors import span_config
 from vectors import by
 
 from raycaster.hdl.signals import bit, bits_for
-from raycaster.rtl.common.interfaces import Run
 from raycaster.rtl.span.lists import ListEntry
 from raycaster.rtl.span.read_ahead import read_ahead
 from raycaster.rtl.span.run_entry import run_entry
@@ -22,7 +21,7 @@ def test_run_entry(bits, leaf_of, random):
     """The highest bits of each channel, by their number."""
     config = span_config(screen="tiny", colour_bits=bits)
     columns = config.screen_geometry.columns
-    leaf = leaf_of(run_entry, config, run=lambda: Run(config), entry=lambda: ListEntry(columns, 3 * bits))
+    leaf = leaf_of(run_entry, config, entry=lambda: ListEntry(columns, 3 * bits))
     for _ in range(leaf.some(60)):
         end, ready, channels = int(random.integers(columns + 1)), int(random.integers(2)), random.integers(256, size=3)
         red, green, blue = (int(channel) >> 8 - bits for channel in channels)

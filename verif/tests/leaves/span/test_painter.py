@@ -7,8 +7,8 @@ import pytest
 from span_vectors import span_config
 from vectors import by
 
+from raycaster.hdl.signals import bit
 from raycaster.rtl.common.interfaces import Run
-from raycaster.rtl.common.widths import RGB_BITS, column_bits, level_bits, weight_bits
 from raycaster.rtl.span.painter import painter
 from raycaster.rtl.span.run_joiner import run_joiner
 
@@ -17,9 +17,7 @@ from raycaster.rtl.span.run_joiner import run_joiner
 def test_painter(patterns, reflections, leaf_of, random):
     """Mixed colours of all levels; with patterns, runs end where the colour of any level changes."""
     config = span_config(screen="tiny", rectangles=4, reflections=reflections, patterns=patterns)
-    bits = {"level": level_bits(config), "seen": level_bits(config), "seen_share": weight_bits(config)}
-    bits |= {"seen_colour": RGB_BITS, **dict.fromkeys(("stop", "next_column", "place"), column_bits(config))}
-    leaf = leaf_of(painter, config, run=lambda: Run(config), **bits)
+    leaf = leaf_of(painter, config, step=bit)
     leaf.case({"reset": 1, "emit": 0, "run_ready": 0})
     held, stop = None, 0
 
@@ -70,7 +68,7 @@ def test_painter(patterns, reflections, leaf_of, random):
 def test_run_joiner(patience, leaf_of, random):
     """Runs of few colours, some without columns; each side waits at times, and nothing that waits changes."""
     config = span_config(screen="tiny")
-    leaf = leaf_of(run_joiner, config, part=lambda: Run(config), run=lambda: Run(config))
+    leaf = leaf_of(run_joiner, config, part=lambda: Run(config))
     leaf.case({"reset": 1, "part_valid": 0})
     rows = []
     for _ in range(12):

@@ -6,7 +6,6 @@ from span_vectors import span_config
 
 from raycaster.rtl.common.interfaces import Rects
 from raycaster.rtl.common.records import Rect
-from raycaster.rtl.common.widths import index_bits
 from raycaster.rtl.span.rect_copier import rect_copier
 from raycaster.rtl.span.rect_table import rect_table
 
@@ -15,7 +14,7 @@ from raycaster.rtl.span.rect_table import rect_table
 def test_rect_copier(rectangles, leaf_of, random):
     """Frames that begin at any time, also while rectangles are copied; resets."""
     config = span_config(screen="tiny", rectangles=rectangles)
-    leaf = leaf_of(rect_copier, config, start=1, rects=lambda: Rects(config), number=index_bits(config))
+    leaf = leaf_of(rect_copier, config)
     leaf.case({"reset": 1, "start": 0})
     leaf.case({"reset": 1})
     ahead, stored, whole = [], None, 0
@@ -40,7 +39,7 @@ def test_rect_copier(rectangles, leaf_of, random):
 def test_rect_table(rectangles, leaf_of, random):
     """Rectangles that are stored and fetched in any order, also in the same cycle."""
     config = span_config(screen="tiny", rectangles=rectangles, materials=True)
-    leaf = leaf_of(rect_table, config, number=index_bits(config), walk=lambda: Rects(config))
+    leaf = leaf_of(rect_table, config, walk=lambda: Rects(config))
     layout = Rect(config).layout
     known, held = {}, None
     for cycle in range(rectangles + 1 + leaf.some(400)):

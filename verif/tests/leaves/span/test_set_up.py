@@ -8,17 +8,15 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from span_vectors import any_chain, any_slope, chain_bench, chain_inputs, chain_ports, rect_inputs, span_config
+from span_vectors import any_chain, any_slope, chain_bench, chain_inputs, rect_inputs, span_config
 from vectors import by_axis, named
 
 from raycaster.golden.spans import ANSWER, Drawing, Line, SpanModel
 from raycaster.golden.spans import Chain as Fan
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.hdl.signals import bit
 from raycaster.rtl.span.clipper import clipper
 from raycaster.rtl.span.first_change import division_cycles
 from raycaster.rtl.span.half_lines import half_lines
-from raycaster.rtl.span.records import Answer, Asks, Chain, Entry
 from raycaster.verif.random_world import random_camera, random_rectangles
 
 DESIGNS = [
@@ -48,7 +46,7 @@ def met(table, index, chain, slope, column) -> bool:
 def test_set_up(options, leaf_of, random):
     """Each entry has exactly the columns that meet the rectangle, and is there when the model says so."""
     config = span_config(**options)
-    leaf = leaf_of(chain_bench, config, **chain_ports(config))
+    leaf = leaf_of(chain_bench, config)
     leaf.case({"reset": 1, "begin_sweep": 0})
     appended, kinds, every = {}, set(), 6 if config.most_reflections else 3
     for drawn in range(500):
@@ -110,11 +108,7 @@ def test_set_up(options, leaf_of, random):
 def test_half_lines(options, leaf_of, random):
     """The lines of one rectangle have the values of the contract at the ends of the chain, and come in its order."""
     config = span_config(**options)
-    ports = {
-        "start": bit, "chain": lambda: Chain(config), "asks": lambda: Asks(config), "answer": lambda: Answer(config),
-        "entry": lambda: Entry(config),
-    }  # fmt: skip
-    leaf = leaf_of(half_lines, config, **ports)
+    leaf = leaf_of(half_lines, config)
     leaf.case({"reset": 1, "answer_half_line": 0, "done": 0})
     numbers, asked_lines = set(), {}
     for _ in range(leaf.some(300)):
@@ -196,11 +190,7 @@ def test_half_lines(options, leaf_of, random):
 def test_clipper(leaf_of, random):
     """Lines of one rectangle after the other, each answered, divided and used while others are asked for."""
     config = span_config(screen="tiny", rectangles=8, reflections=1)
-    ports = {
-        "chain": lambda: Chain(config), "met": lambda: Entry(config), "asks": lambda: Asks(config),
-        "answer": lambda: Answer(config), "entry": lambda: Entry(config),
-    }  # fmt: skip
-    leaf, cycles, kinds = leaf_of(clipper, config, **ports), division_cycles(config), set()
+    leaf, cycles, kinds = leaf_of(clipper, config), division_cycles(config), set()
     quiet = {"reset": 0, "opened": 0, "answer_valid": 0, "answer_half_line": 1, "answer_last": 0}
     leaf.case(quiet | {"reset": 1})
     for _ in range(leaf.some(60)):

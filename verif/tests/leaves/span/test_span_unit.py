@@ -18,9 +18,6 @@ from raycaster.configuration import FEATURES, MOST_RECTANGLES, Configuration
 from raycaster.golden.picture import describe_difference
 from raycaster.golden.spans import Row, picture_of
 from raycaster.golden.world import Rectangles
-from raycaster.rtl.common.interfaces import Run
-from raycaster.rtl.common.records import Rect
-from raycaster.rtl.common.widths import index_bits
 from raycaster.scene import load_scene, packaged_scenes
 
 TINY = {"screen": "tiny", "rectangles": 12}
@@ -57,8 +54,7 @@ def busy_frames(
 
 def unit_bench(leaf_of, config: Configuration):
     """Make the bench of a unit, with the screen of its design."""
-    ports = {"number": index_bits(config), "stored": lambda: Rect(config), "usable": config.rectangles}
-    leaf = leaf_of(frame_bench, config, run=lambda: Run(config), **ports)
+    leaf = leaf_of(frame_bench, config)
     leaf.screen = config.screen_geometry
     return leaf
 

@@ -8,26 +8,16 @@ from vectors import by, by_axis, named
 
 from raycaster.golden.spans import ANSWER, Chain, Line, folded
 from raycaster.hdl.signals import bit
-from raycaster.rtl.common.records import Rect
-from raycaster.rtl.common.widths import column_bits, index_bits, level_bits
-from raycaster.rtl.span import records
+from raycaster.rtl.common.widths import index_bits
 from raycaster.rtl.span.shadow_finder import shadow_finder
 from raycaster.rtl.span.surface_light import surface_light
-
-
-def light_ports(config) -> dict:
-    width = column_bits(config)
-    kinds = {"chain": records.Chain, "winner": records.Entry, "asks": records.Asks, "answer": records.Answer}
-    kinds |= {"fan": records.Chain, "aim": records.Aim}
-    made = {name: lambda kind=kind: kind(config) for name, kind in kinds.items()}
-    return made | {"column": width, "stop": width}
 
 
 @by(turn=[False, True])
 def test_shadow_finder(turn, leaf_of, random):
     """The lines are e (P - L) and e, whichever way they are asked for, and the fan's eye is the light."""
     config = span_config(screen="tiny", rectangles=4, reflections=2, turn=turn, light=True)
-    leaf, asked = leaf_of(shadow_finder, config, start=bit, **light_ports(config)), {}
+    leaf, asked = leaf_of(shadow_finder, config), {}
     leaf.case({"reset": 1, "answer_valid": 0})
     for _ in range(leaf.some(150)):
         slope = tuple(Line(*line) for line in zip(*any_slope(random, config), strict=True))
@@ -80,12 +70,7 @@ def test_shadow_finder(turn, leaf_of, random):
 def test_surface_light(leaf_of, random):
     """Surfaces on either side of the light and in its plane; shadows from their first column to their last."""
     config = span_config(screen="tiny", rectangles=6, reflections=1, light=True)
-    leaf = leaf_of(
-        surface_light, config, level=level_bits(config), seen=level_bits(config), rect=lambda: Rect(config),
-        place=column_bits(config), entry_count=records.count_bits(config), tested=lambda: records.Entry(config),
-        looked=level_bits(config), read_place=index_bits(config), next_column=column_bits(config),
-        **light_ports(config),
-    )  # fmt: skip
+    leaf = leaf_of(surface_light, config, read_place=index_bits(config), step=bit)
     leaf.case({"reset": 1, "answer_valid": 0, "set_up_done": 0, "step": 0, "paint": 0})
     seen, kept = set(), {}
 

@@ -11,8 +11,7 @@ from raycaster.golden.spans import ANSWER, Cells, Chain, Drawing, Line, SpanMode
 from raycaster.golden.world import OTHER_AXES
 from raycaster.hdl.signals import bit
 from raycaster.rtl.common.interfaces import Vector
-from raycaster.rtl.common.records import Rect
-from raycaster.rtl.common.widths import RGB_BITS, column_bits, index_bits, level_bits, span_slope_bits, step_bits
+from raycaster.rtl.common.widths import RGB_BITS, index_bits, step_bits
 from raycaster.rtl.span import records
 from raycaster.rtl.span.shadow_scan import shadow_scan
 from raycaster.rtl.span.surface_table import surface_table
@@ -57,13 +56,7 @@ def any_surface(random, mirrors: int):
 def test_surface_cells(reflections, leaf_of, random):
     """The cell of each column, in as many cycles as the model says; several levels are apart."""
     config = span_config(screen="tiny", rectangles=4, reflections=reflections, turn=True, patterns=True)
-    width = column_bits(config)
-    leaf = leaf_of(
-        cells_bench, config, slope=lambda: Vector(span_slope_bits(config)),
-        step_slope=lambda: Vector(step_bits(config)), rect=lambda: Rect(config),
-        chain=lambda: records.Chain(config), winner=lambda: records.Entry(config), kind=2, level=level_bits(config),
-        seen=level_bits(config), column=width, stop=width, place=width, next_column=width,
-    )  # fmt: skip
+    leaf = leaf_of(cells_bench, config, step_slope=lambda: Vector(step_bits(config)), step=bit, kind=2)
     leaf.case({"reset": 1})
     turns = 0
     for number in range(leaf.some(240)):
@@ -114,11 +107,7 @@ def test_surface_cells(reflections, leaf_of, random):
 def test_shadow_scan(leaf_of, random):
     """Shadows that follow each other, overlap, and are equal; none, and one that covers all."""
     config = span_config(screen="tiny", rectangles=6, light=True)
-    width = column_bits(config)
-    leaf = leaf_of(
-        shadow_scan, config, start=bit, column=width, stop=width, count=records.count_bits(config),
-        tested=lambda: records.Entry(config), place=index_bits(config), next_dark=width,
-    )  # fmt: skip
+    leaf = leaf_of(shadow_scan, config, place=index_bits(config))
     leaf.case({"reset": 1})
     seen = set()
     for _ in range(300):
@@ -144,7 +133,7 @@ def test_shadow_scan(leaf_of, random):
 def test_surface_table(leaf_of, random):
     config = span_config(screen="tiny", rectangles=4, reflections=3, patterns=True)
     records_ = {"given": lambda: records.Paint(config), "shown": lambda: records.Paint(config)}
-    leaf, memory = leaf_of(surface_table, config, level=level_bits(config), seen=level_bits(config), **records_), {}
+    leaf, memory = leaf_of(surface_table, config, **records_), {}
     for level in range(4):
         memory[level] = int(random.integers(1 << RGB_BITS))
         leaf.case({"paint": 1, "level": level, "given_colour": memory[level]})

@@ -7,11 +7,11 @@ from fractions import Fraction
 from itertools import product
 
 import pytest
-from span_vectors import NOTHING, chain_bench, chain_ports, span_config
+from span_vectors import NOTHING, chain_bench, span_config
 from vectors import by, by_axis, named
 
 from raycaster.golden.spans import Chain, Drawing, Entry, Line, Rect, SpanModel
-from raycaster.rtl.common.widths import eye_bits, level_bits
+from raycaster.rtl.common.widths import eye_bits
 from raycaster.rtl.span.entry_table import entry_table
 from raycaster.rtl.span.records import Entry as EntryRecord
 from raycaster.rtl.span.records import count_bits
@@ -55,7 +55,7 @@ def any_entries(random, slope, count) -> list[Entry]:
 def test_sweep(count, leaf_of, random):
     """The spans of a chain, from the gap with which it begins to its end, in as many cycles as the model says."""
     config = span_config(screen="tiny", rectangles=count, reflections=1, turn=True)
-    leaf = leaf_of(chain_bench, config, **chain_ports(config))
+    leaf = leaf_of(chain_bench, config)
     seen = {"spans": 0, "gaps": 0, "divisions": 0, "orders": 0}
     leaf.case({"reset": 1})
     for drawn in range(2000):
@@ -115,8 +115,7 @@ def entry_inputs(entry, slope, prefix) -> dict[str, int]:
 def test_entry_table(light, reflections, leaf_of, random):
     """Tables of all levels are apart, and with a light those of the shadows."""
     config = span_config(screen="tiny", rectangles=5, reflections=reflections, light=light)
-    ports = {"level": level_bits(config), "number": count_bits(config), "place": 3}
-    leaf = leaf_of(entry_table, config, entry=lambda: EntryRecord(config), stored=lambda: EntryRecord(config), **ports)
+    leaf = leaf_of(entry_table, config, stored=lambda: EntryRecord(config), number=count_bits(config), place=3)
     memory, shown = {}, None
     places = [(*one, place) for one in product(range(1 + light), range(reflections + 1)) for place in range(5)]
     for shadows, level, place in places:
