@@ -65,7 +65,7 @@ PAGE_MODELS = {
     "plain": {"engine": "span", "screen": "tiny", "turn": True},
     "full": {"engine": "span", "turn": True, "light": True, **_LOOKS, "reflections": 4, "rectangles": 32},
     "exact": {"engine": "exact", "turn": True, "light": True, **_LOOKS},
-    "seed-0": {"engine": "seed", **_LOOKS},
+    "seed-0": {"engine": "seed", "units": 16, "divider_bits": 3, **_LOOKS},
 }
 """Options of small models for the web page, by the names of the page's own."""
 
@@ -161,7 +161,7 @@ def output(request: pytest.FixtureRequest) -> Path:
 def bench(output: Path, tmp_path_factory: pytest.TempPathFactory) -> Bench:
     """Return a function that runs a cocotb bench on a design and returns the directory of its results.
 
-    In Icarus, and in Verilator if options are given for its models, all registers and memories start unknown.
+    All registers and memories start unknown in Icarus, and with random values in Verilator, chosen by `start`.
     """
 
     def run(
@@ -174,27 +174,22 @@ def bench(output: Path, tmp_path_factory: pytest.TempPathFactory) -> Bench:
         defines: Mapping[str, int] | None = None,
         flags: Sequence[str] = VERILATOR_FLAGS,
         seeds: tuple[int, ...] = (),
-        plusargs: tuple[str, ...] = (),
+        start: int = 1,
     ) -> Path:
-        if simulator == "icarus" or plusargs:
-            files = verilog or convert(configuration, BUILD)
-            directory = tmp_path_factory.mktemp("unknown")
-            verilog = [directory / file.name for file in files]
-            for file, copy in zip(files, verilog, strict=True):
-                copy.write_text(without_power_up(file.read_text()))
+        files = verilog or convert(configuration, BUILD)
+        directory = tmp_path_factory.mktemp("unknown")
+        verilog = [directory / file.name for file in files]
+        for file, copy in zip(files, verilog, strict=True):
+            copy.write_text(without_power_up(file.read_text()))
         model = build_model(configuration, simulator, build=BUILD, verilog=verilog, defines=defines, flags=flags)
         job = Job(
             configuration, scene=str(scene), output=str(output), reflections=configuration.most_reflections, seeds=seeds
         )
-        run_bench(model, f"raycaster.{module}", job, output, plusargs=plusargs)
+        plusargs = ("+verilator+rand+reset+2", f"+verilator+seed+{start + seed()}")
+        run_bench(model, f"raycaster.{module}", job, output, plusargs=plusargs if simulator == "verilator" else ())
         return output
 
     return run
-
-
-def random_values(start: int) -> tuple[str, str]:
-    """Return options with which a model from Verilator starts with random registers and memories."""
-    return "+verilator+rand+reset+2", f"+verilator+seed+{start}"
 
 
 def called(*words: str, cwd: Path, program: Callable[[list[str]], int | None] = main) -> subprocess.CompletedProcess:

@@ -15,7 +15,7 @@ from itertools import product
 from typing import Any
 
 import pytest
-from conftest import BUILD, ROOT, SMALL_SCENE, TINY, Bench, broken, random_values
+from conftest import BUILD, ROOT, SMALL_SCENE, TINY, Bench, broken
 
 from raycaster.buses import BRIDGED, BUSES, OWN, most_baud
 from raycaster.configuration import Configuration, ConfigurationError
@@ -254,13 +254,13 @@ def test_icarus_takes_clocks_that_rest(bench: Bench):
     bench(TRAFFIC_BENCH, SMALL[OWN], "icarus", seeds=(1,), defines=GATED)
 
 
-@pytest.mark.slow_sets(quick=["avalon-1", "span-1", "exact-1"])
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("design", "start"), [(name, start) for name in STARTED for start in ((1, 2) if name in BRIDGED else (1, 2, 3, 4))]
 )
 def test_random_start(bench: Bench, design, start):
-    """Registers and memories start with random values, which have no effect after reset."""
-    bench("sim.frame_bench", STARTED[design], "verilator", SMALL_SCENE, plusargs=random_values(start))
+    """Registers and memories start with random values, as in all benches, which have no effect after reset."""
+    bench("sim.frame_bench", STARTED[design], "verilator", SMALL_SCENE, start=start)
 
 
 @pytest.mark.slow
@@ -268,8 +268,7 @@ def test_the_start_is_random(noticed: Noticed):
     """Without its reset, a counter starts at a different random value each time."""
     fault = "avalon_interface", "frame <= 0;", "frame <= frame;"
     complaints = {
-        noticed(fault, TRAFFIC_BENCH, "verilator", seeds=(1,), plusargs=random_values(start)).partition(";")[0]
-        for start in (1, 2, 3)
+        noticed(fault, TRAFFIC_BENCH, "verilator", seeds=(1,), start=start).partition(";")[0] for start in (1, 2, 3)
     }
     assert len(complaints) == 3
     assert all("status reads" in complaint for complaint in complaints)

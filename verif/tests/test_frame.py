@@ -47,7 +47,7 @@ FULL_SIZE = {
 """Engine, scene, and what of the scene is built in."""
 
 
-@pytest.mark.slow_sets(quick=["boxes"])
+@pytest.mark.slow_sets(quick=["exact"])
 @pytest.mark.parametrize("case", FULL_SIZE)
 def test_full_size(bench: Bench, case):
     """Every scene that the default design can draw, and some in the exact engine, as `make sim` shows them."""

@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from conftest import BUILD, ROOT, SMALL_SCENE, called, plant, random_values, refusal
+from conftest import BUILD, ROOT, SMALL_SCENE, called, plant, refusal
 from engine_vectors import check_ray_unit
 
 from raycaster.design.decide import configure
@@ -103,7 +103,7 @@ def test_random_start(bench, tmp_path, cells, engine, start):
     random_models = tmp_path / "cells.v"
     random_models.write_text(text)
     bench("sim.frame_bench", design, "verilator", SMALL_SCENE, verilog=[random_models, placed],
-          defines={"NETLIST": 1}, plusargs=random_values(start))  # fmt: skip
+          defines={"NETLIST": 1}, start=start)  # fmt: skip
 
 
 def test_ray_unit(leaf_of, random, tmp_path):

@@ -39,32 +39,20 @@ def _sim(build: Path, *arguments: object, code: int = 0) -> str:
     return ran.stdout
 
 
-def test_one_scene_and_two(tmp_path, monkeypatch):
-    """The run writes pictures, results and a table; with waveforms, it names their file; a sheet shows both scenes."""
+def test_two_scenes_and_one(tmp_path, monkeypatch):
+    """The run writes pictures, results and a table; a sheet shows both scenes; with waveforms, it names their file."""
     monkeypatch.delenv(MODELS_VARIABLE)  # so that no built model is found
-    said = _sim(tmp_path, "--waves")
-    output = tmp_path / "sim-exact-tiny-rectangles-3" / "small"
-    for name in ("frame", "golden", "exact", "diff"):
-        assert Image.open(output / f"{name}.png").size == (128, 96)
-    assert (output / "frame.png").read_bytes() == (output / "golden.png").read_bytes()
-    result = json.loads((output / "result.json").read_text())
-    assert result["wrong_vs_golden"] == 0
-    assert [path.name for path in output.parent.iterdir()] == ["small"], "nothing half-written is left"
-    sizes = "(128x96 for 64x48 rays)"
-    assert f"1 scene, 0 of 12,288 pixels wrong {sizes}; picture: {output / 'frame.png'}\n" in said
-    assert "building exact-tiny48-u2-r3-m1-c8 with icarus" in said
-    assert (output / "waves.fst").stat().st_size > 0
-    assert str(output / "waves.fst") in said
-    assert "was built before" not in said
-
+    output, sizes = tmp_path / "sim-exact-tiny-rectangles-3", "(128x96 for 64x48 rays)"
     other = tmp_path / "other.toml"
     other.write_text(SMALL_SCENE.read_text().replace("#c8c8b4", "#ff0000"))
+    output.mkdir()
     for stale in ("older", "older-failed"):
-        emptied(output.parent / stale)
-    (output.parent / "mine").mkdir()
+        emptied(output / stale)
+    (output / "mine").mkdir()
     said = _sim(tmp_path, other, "--waves")
-    assert ("was built before" in said, "building" in said) == (True, False)
-    sheet, output = Image.open(tmp_path / "sim-exact-tiny-rectangles-3" / "scenes.png"), output.parent
+    assert "building exact-tiny48-u2-r3-m1-c8 with icarus" in said
+    assert "was built before" not in said
+    sheet = Image.open(output / "scenes.png")
     assert sheet.size == (2 * 320 + 8, 240 + CAPTION)
     names = [sheet.crop((left, 240, left + 320, 240 + CAPTION)) for left in (0, 328)]
     assert all(low == 0 for name in names for low, _ in name.getextrema()), "no name below a frame"
@@ -73,8 +61,17 @@ def test_one_scene_and_two(tmp_path, monkeypatch):
     assert floors == [Image.open(output / name / "frame.png").getpixel((64, 94)) for name in ("small", "other")]
     pictures = f"{output / 'scenes.png'} and {output}/*/frame.png"
     assert f"2 scenes, 0 of 24,576 pixels wrong {sizes}; pictures: {pictures}\n" in said
-    _sim(tmp_path)
+
+    said, small = _sim(tmp_path, "--waves"), output / "small"
+    assert ("was built before" in said, "building" in said) == (True, False)
     assert {path.name for path in output.iterdir()} == {"small", "other", "mine"}, "the sheet has an older frame"
+    for name in ("frame", "golden", "exact", "diff"):
+        assert Image.open(small / f"{name}.png").size == (128, 96)
+    assert (small / "frame.png").read_bytes() == (small / "golden.png").read_bytes()
+    assert json.loads((small / "result.json").read_text())["wrong_vs_golden"] == 0
+    assert f"1 scene, 0 of 12,288 pixels wrong {sizes}; picture: {small / 'frame.png'}\n" in said
+    assert (small / "waves.fst").stat().st_size > 0
+    assert str(small / "waves.fst") in said
 
 
 def test_pictures_of_another_screen_or_engine_are_kept_apart():
