@@ -51,12 +51,7 @@ always @* case (watched)
     default: implemented = 0;
 endcase
 
-reg known = 0;
-always @(posedge clk) known <= 1;
-always @* begin
-    if (!known) assume (reset);
-    assume (!(read && write));
-end
+always @* assume (!(read && write));
 
 // waitrequest is high in the first cycle after reset only.
 always @* if (known) assert (waitrequest == $past(reset));
@@ -206,10 +201,8 @@ end
 // The memories of rect_mem are registers in this model.
 wire [95:0] slot_0 = rects.written[0] ? \rects.shadow_words[0] : 0;
 wire [95:0] slot_1 = rects.written[1] ? \rects.shadow_words[1] : 0;
-wire [5:0] its_banks = watched_slot
-    ? {rects.rect_slot_1_i.shadow, rects.rect_slot_1_i.pending, rects.rect_slot_1_i.live}
-    : {rects.rect_slot_0_i.shadow, rects.rect_slot_0_i.pending, rects.rect_slot_0_i.live};
-wire [1:0] its_shadow = its_banks[5:4], its_pending = its_banks[3:2], its_live = its_banks[1:0];
+wire [1:0] its_shadow = rects.rect_slot{watched_slot}_i.shadow, its_live = rects.rect_slot{watched_slot}_i.live;
+wire [1:0] its_pending = rects.rect_slot{watched_slot}_i.pending;
 wire [2:0] right = watched_slot ? {\rects.banks[5] == result, \rects.banks[3] == result, \rects.banks[1] == result}
     : {\rects.banks[4] == result, \rects.banks[2] == result, \rects.banks[0] == result};
 wire stores_0 = rects.storing && !rects.latest_index, stores_1 = rects.storing && rects.latest_index;
@@ -228,13 +221,11 @@ always @* if (known) begin
     assert (its_shadow < 3 && its_pending < 3 && its_live < 3);
     if (!stores_it) begin
         if (written_1 && slot_shadow_1 == words) assert (right[its_shadow]);
-        assert ((watched_slot ? rects.rect_slot_1_i.shadow_usable : rects.rect_slot_0_i.shadow_usable)
-            == good(slot_shadow_1));
+        assert (rects.rect_slot{watched_slot}_i.shadow_usable == good(slot_shadow_1));
     end
     if (written_pending && slot_pending == words) assert (right[its_pending]);
     if (written_live && slot_live == words) assert (right[its_live]);
-    assert ((watched_slot ? rects.rect_slot_1_i.pending_usable : rects.rect_slot_0_i.pending_usable)
-        == good(slot_pending));
+    assert (rects.rect_slot{watched_slot}_i.pending_usable == good(slot_pending));
     if (committed_2) assert (slot_snapshot == slot_shadow_1 && written_snapshot == written_1);
 end
 

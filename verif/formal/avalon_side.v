@@ -12,12 +12,10 @@ wire [ADDRESS_BITS+36:0] request = {is_write, at, bytes, data};
 
 // The previous cycle; of the current access, accepted transfers, cycles, and cycles of waitrequest; cycles since an
 // unanswered read was accepted.
-reg known = 0;
 reg outstanding;
 reg [1:0] transfers;
 reg [7:0] age, waited, since;
 always @(posedge clk) begin
-    known <= 1;
     if (reset || !active || done) {transfers, age, waited} <= 0;
     else begin
         transfers <= transfers + taken;
@@ -28,7 +26,6 @@ always @(posedge clk) begin
     since <= outstanding ? since + 1 : 1;
 end
 always @* begin
-    if (!known) assume (reset);
     if (known && !outstanding) assume (!readdatavalid);
     if (known && outstanding && since == MOST_LATENCY) assume (readdatavalid);
     if (known && waited == MOST_WAIT) assume (!waitrequest);

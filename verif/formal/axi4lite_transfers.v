@@ -31,8 +31,6 @@ wire ar = s_axi_arvalid && s_axi_arready, r = s_axi_rvalid && s_axi_rready;
 wire aw_waits = s_axi_awvalid && !s_axi_awready, w_waits = s_axi_wvalid && !s_axi_wready;
 wire ar_waits = s_axi_arvalid && !s_axi_arready, b_waits = s_axi_bvalid && !s_axi_bready;
 wire r_waits = s_axi_rvalid && !s_axi_rready;
-reg known = 0;
-always @(posedge clk) known <= 1;
 
 // For each kind, transfers that the agent has accepted and that wait for the manager's handshake, and handshakes that
 // wait for a response; for a read, the agent's answer.
@@ -63,7 +61,6 @@ always @(posedge clk) begin
 end
 
 always @* begin
-    if (!known) assume (reset);
     if (reset) assume (!s_axi_awvalid && !s_axi_wvalid && !s_axi_arvalid);
     if (known && !$past(reset) && !reset) begin
         if ($past(aw_waits)) assume (s_axi_awvalid && $stable(s_axi_awaddr));

@@ -137,16 +137,14 @@ end
 generate
     genvar unit;
     for (unit = 0; unit < 2; unit = unit + 1) begin: units
-        wire [8:0] started_b = unit ? dut.intersection_helper_1_i.started_b : dut.intersection_helper_0_i.started_b;
-        wire [8:0] started_e = unit ? dut.intersection_helper_1_i.started_e : dut.intersection_helper_0_i.started_e;
-        wire [P+1:0] started =
-            unit ? dut.intersection_helper_1_i.started_word : dut.intersection_helper_0_i.started_word;
-        wire [P+1:0] in_divider =
-            unit ? dut.intersection_helper_1_i.loaded_word : dut.intersection_helper_0_i.loaded_word;
-        wire [P+1:0] stored = unit ? dut.intersection_helper_1_i.stored_word : dut.intersection_helper_0_i.stored_word;
-        wire [P+8:0] product = unit ? dut.intersection_helper_1_i.product : dut.intersection_helper_0_i.product;
-        wire overflow = unit ? dut.intersection_helper_1_i.overflow : dut.intersection_helper_0_i.overflow;
-        wire [P-1:0] quotient = unit ? dut.intersection_helper_1_i.quotient : dut.intersection_helper_0_i.quotient;
+        wire [8:0] started_b = dut.intersection_helper{unit}_i.started_b;
+        wire [8:0] started_e = dut.intersection_helper{unit}_i.started_e;
+        wire [P+1:0] started = dut.intersection_helper{unit}_i.started_word;
+        wire [P+1:0] in_divider = dut.intersection_helper{unit}_i.loaded_word;
+        wire [P+1:0] stored = dut.intersection_helper{unit}_i.stored_word;
+        wire [P+8:0] product = dut.intersection_helper{unit}_i.product;
+        wire overflow = dut.intersection_helper{unit}_i.overflow;
+        wire [P-1:0] quotient = dut.intersection_helper{unit}_i.quotient;
 
         wire [P:0] result;
         reg [P:0] result_held, result_stored;

@@ -40,13 +40,9 @@ rect_mem memory (.*);
 wire [RECT_BITS-1:0] fixed_rect;
 rect_rom rom (.*, .rects_rect_word(fixed_rect));
 
-reg running = 0, wrote = 0;
-always @(posedge clk) begin
-    running <= 1;
-    wrote <= bus_write;
-end
+reg wrote = 0;
+always @(posedge clk) wrote <= bus_write;
 always @* begin
-    if (!running) assume (reset);
     assume (rects_index < 3 && next_slot < 3 && next_word < 3);
     assume (!bus_write || accessed);
     assume (!(bus_commit && wrote));
@@ -68,28 +64,24 @@ end
 
 // True if the rectangle at the outputs was from the scene when it was fetched.
 reg fetched = 0;
-always @(posedge clk) if (rects_fetch) fetched <= live[rects_index] && running;
+always @(posedge clk) if (rects_fetch) fetched <= live[rects_index] && known;
 always @* if (fetched) assert (fixed_rect == rects_rect_word);
-always @* if (running) assert ((rects_usable & live) == live);
+always @* if (known) assert ((rects_usable & live) == live);
 
 // Invariants: what is known of the memory's address, and its contents, which are registers in this model.
-always @* if (running && accessed)
+always @* if (known && accessed)
     assert (memory.in_table && memory.index == slot && memory.known == memory.written[slot]);
-fixed_rects_slot #(RECT_BITS, SCENE_0, KEPT) slot_0 (
-    running, wrote, memory.storing && memory.latest_index == 0, memory.latest_word, written_0, shadow[0],
-    pending[0], live[0], memory.written[0], \memory.shadow_words[0] , \memory.banks[0] ,
-    \memory.banks[4] , \memory.banks[8] , memory.rect_slot_0_i.shadow, memory.rect_slot_0_i.pending,
-    memory.rect_slot_0_i.live, memory.rect_slot_0_i.shadow_usable, memory.rect_slot_0_i.pending_usable);
-fixed_rects_slot #(RECT_BITS, SCENE_1, KEPT) slot_1 (
-    running, wrote, memory.storing && memory.latest_index == 1, memory.latest_word, written_1, shadow[1],
-    pending[1], live[1], memory.written[1], \memory.shadow_words[1] , \memory.banks[1] ,
-    \memory.banks[5] , \memory.banks[9] , memory.rect_slot_1_i.shadow, memory.rect_slot_1_i.pending,
-    memory.rect_slot_1_i.live, memory.rect_slot_1_i.shadow_usable, memory.rect_slot_1_i.pending_usable);
-fixed_rects_slot #(RECT_BITS, SCENE_2, KEPT) slot_2 (
-    running, wrote, memory.storing && memory.latest_index == 2, memory.latest_word, written_2, shadow[2],
-    pending[2], live[2], memory.written[2], \memory.shadow_words[2] , \memory.banks[2] ,
-    \memory.banks[6] , \memory.banks[10] , memory.rect_slot_2_i.shadow, memory.rect_slot_2_i.pending,
-    memory.rect_slot_2_i.live, memory.rect_slot_2_i.shadow_usable, memory.rect_slot_2_i.pending_usable);
+generate
+    genvar i;
+    for (i = 0; i < 3; i = i + 1) begin: slots
+        fixed_rects_slot #(RECT_BITS, i == 0 ? SCENE_0 : i == 1 ? SCENE_1 : SCENE_2, KEPT) slot_i (
+            known, wrote, memory.storing && memory.latest_index == i, memory.latest_word,
+            i == 0 ? written_0 : i == 1 ? written_1 : written_2, shadow[i], pending[i], live[i], memory.written[i],
+            memory.shadow_words{i}, memory.banks{i}, memory.banks{i + 4}, memory.banks{i + 8},
+            memory.rect_slot{i}_i.shadow, memory.rect_slot{i}_i.pending, memory.rect_slot{i}_i.live,
+            memory.rect_slot{i}_i.shadow_usable, memory.rect_slot{i}_i.pending_usable);
+    end
+endgenerate
 
 // Covers fetches of one rectangle after another.
 reg [1:0] before = 0;

@@ -22,17 +22,14 @@ always @(posedge clk) if (rects_fetch) tag <= rects_index;
 assign rects_rect_word = {2'd0, tag, 60'd0};
 
 // Since the last reset: whether the control was enabled, and the number of cycles that it has been active.
-reg known = 0;
 reg started, was_done;
 reg [TIME_BITS-1:0] cycles;
 always @(posedge clk) begin
-    known <= 1;
     started <= !reset && (started || enable);
     cycles <= reset || !(started || enable) ? 0 : cycles + !done;
     was_done <= done && !reset;
 end
 always @* begin
-    if (!known) assume (reset);
     assume (reflections <= REFLECTIONS);
     if (known && started) assume ($stable(usable) && $stable(may_hit) && $stable(reflections));
     if (known && lost) assume (!fate_any_alive);

@@ -35,37 +35,20 @@ wire start_screen = scan_start_screen, start_row = scan_start_row, visible = sca
 wire next_column = scan_next_column;
 
 // The entries of the list in view: with two pixels per clock, the even and the odd ones.
-wire [2*ONE-1:0] bank_0, bank_1;
-generate if (PIXELS == 2) begin: two_banks
-    assign bank_0 = upper
-        ? {\dut.list_memory_0_i.run_memory_0_i.run_bank_i.memory[1] ,
-            \dut.list_memory_0_i.run_memory_0_i.run_bank_i.memory[0] }
-        : {\dut.list_memory_0_i.run_memory_1_i.run_bank_i.memory[1] ,
-            \dut.list_memory_0_i.run_memory_1_i.run_bank_i.memory[0] };
-    assign bank_1 = upper
-        ? {\dut.list_memory_1_i.run_memory_0_i.run_bank_i.memory[1] ,
-            \dut.list_memory_1_i.run_memory_0_i.run_bank_i.memory[0] }
-        : {\dut.list_memory_1_i.run_memory_1_i.run_bank_i.memory[1] ,
-            \dut.list_memory_1_i.run_memory_1_i.run_bank_i.memory[0] };
-end else begin: one_bank
-    assign bank_0 = upper
-        ? {\dut.list_memory_i.run_memory_0_i.run_bank_i.memory[1] ,
-            \dut.list_memory_i.run_memory_0_i.run_bank_i.memory[0] }
-        : {\dut.list_memory_i.run_memory_1_i.run_bank_i.memory[1] ,
-            \dut.list_memory_i.run_memory_1_i.run_bank_i.memory[0] };
-    assign bank_1 = 0;
-end endgenerate
+wire [2*ONE-1:0] bank_0 = {dut.list_memory{0}_i.run_memory{!upper}_i.run_bank_i.memory{1},
+    dut.list_memory{0}_i.run_memory{!upper}_i.run_bank_i.memory{0}};
+wire [2*ONE-1:0] bank_1 = {dut.list_memory{1}_i.run_memory{!upper}_i.run_bank_i.memory{1},
+    dut.list_memory{1}_i.run_memory{!upper}_i.run_bank_i.memory{0}};
 function [ONE-1:0] of(input [2*ONE-1:0] even, input [2*ONE-1:0] odd, input [4:0] number);
     if (PIXELS == 1) of = even >> ONE * number[0];
     else of = (number[0] ? odd : even) >> ONE * number[1];
 endfunction
 
 // The monitor: cycles since a line's visible part, and columns of the line that are over.
-reg known = 0, was_visible, screen_seen;
+reg was_visible, screen_seen;
 reg [3:0] blank;
 reg [3:0] column;
 always @(posedge clk) begin
-    known <= 1;
     was_visible <= visible && !reset;
     blank <= visible || reset ? 0 : blank == BLANKING ? BLANKING : blank + 1;
     column <= !visible || reset ? 0 : column + (next_column ? PIXELS : 0);
@@ -73,7 +56,6 @@ always @(posedge clk) begin
 end
 wire early = !visible && blank < 3;
 always @* begin
-    if (!known) assume (reset);
     if (visible) assume (blank == BLANKING || was_visible);
     if (visible) assume (column < COLUMNS);
     if (known && was_visible && column < COLUMNS) assume (visible);
@@ -140,73 +122,31 @@ always @* if (known) begin
 end
 
 // Invariants of what is read ahead: it follows the place, from the head on, in slots, on the way there, and beyond.
-wire [3*PIXELS-1:0] ahead, filled;
-wire [2*PIXELS-1:0] head_slot, put_slot, on_the_way, read_place;
-wire [4*ONE*PIXELS-1:0] slots;
-wire [PIXELS-1:0] lower_reads, upper_reads;
-wire [ONE*PIXELS-1:0] lower_runs, upper_runs;
-wire [2*ONE*PIXELS-1:0] arriving;  // the run that comes from the memory, and above it the one after it
-generate if (PIXELS == 2) begin: two_readers
-    assign lower_reads = {dut.list_memory_1_i.run_memory_0_i.run_bank_i.reads,
-        dut.list_memory_0_i.run_memory_0_i.run_bank_i.reads};
-    assign upper_reads = {dut.list_memory_1_i.run_memory_1_i.run_bank_i.reads,
-        dut.list_memory_0_i.run_memory_1_i.run_bank_i.reads};
-    assign lower_runs = {dut.list_memory_1_i.lower_run_word, dut.list_memory_0_i.lower_run_word};
-    assign upper_runs = {dut.list_memory_1_i.upper_run_word, dut.list_memory_0_i.upper_run_word};
-    assign ahead[3*0 +: 3] = dut.read_ahead_0_i.taken_slots, filled[3*0 +: 3] = dut.read_ahead_0_i.filled_slots;
-    assign head_slot[2*0 +: 2] = dut.read_ahead_0_i.head_slot, put_slot[2*0 +: 2] = dut.read_ahead_0_i.put_slot;
-    assign on_the_way[2*0 +: 2] = dut.read_ahead_0_i.on_the_way, read_place[2*0 +: 2] = dut.read_ahead_0_i.read_place;
-    assign slots[4*ONE*0 +: 4*ONE] = {\dut.read_ahead_0_i.slots[3] , \dut.read_ahead_0_i.slots[2] ,
-        \dut.read_ahead_0_i.slots[1] , \dut.read_ahead_0_i.slots[0] };
-    assign arriving[2*ONE*0 +: ONE] = dut.list_memory_0_i.shown_word;
-    assign arriving[2*ONE*0 + ONE +: ONE] = upper ? dut.list_memory_0_i.run_memory_0_i.run_bank_i.fetched
-        : dut.list_memory_0_i.run_memory_1_i.run_bank_i.fetched;
-    assign ahead[3*1 +: 3] = dut.read_ahead_1_i.taken_slots, filled[3*1 +: 3] = dut.read_ahead_1_i.filled_slots;
-    assign head_slot[2*1 +: 2] = dut.read_ahead_1_i.head_slot, put_slot[2*1 +: 2] = dut.read_ahead_1_i.put_slot;
-    assign on_the_way[2*1 +: 2] = dut.read_ahead_1_i.on_the_way, read_place[2*1 +: 2] = dut.read_ahead_1_i.read_place;
-    assign slots[4*ONE*1 +: 4*ONE] = {\dut.read_ahead_1_i.slots[3] , \dut.read_ahead_1_i.slots[2] ,
-        \dut.read_ahead_1_i.slots[1] , \dut.read_ahead_1_i.slots[0] };
-    assign arriving[2*ONE*1 +: ONE] = dut.list_memory_1_i.shown_word;
-    assign arriving[2*ONE*1 + ONE +: ONE] = upper ? dut.list_memory_1_i.run_memory_0_i.run_bank_i.fetched
-        : dut.list_memory_1_i.run_memory_1_i.run_bank_i.fetched;
-end else begin: one_reader
-    assign lower_reads = dut.list_memory_i.run_memory_0_i.run_bank_i.reads;
-    assign upper_reads = dut.list_memory_i.run_memory_1_i.run_bank_i.reads;
-    assign lower_runs = dut.list_memory_i.lower_run_word, upper_runs = dut.list_memory_i.upper_run_word;
-    assign ahead[3*0 +: 3] = dut.read_ahead_i.taken_slots, filled[3*0 +: 3] = dut.read_ahead_i.filled_slots;
-    assign head_slot[2*0 +: 2] = dut.read_ahead_i.head_slot, put_slot[2*0 +: 2] = dut.read_ahead_i.put_slot;
-    assign on_the_way[2*0 +: 2] = dut.read_ahead_i.on_the_way, read_place[2*0 +: 2] = dut.read_ahead_i.read_place;
-    assign slots[4*ONE*0 +: 4*ONE] = {\dut.read_ahead_i.slots[3] , \dut.read_ahead_i.slots[2] ,
-        \dut.read_ahead_i.slots[1] , \dut.read_ahead_i.slots[0] };
-    assign arriving[2*ONE*0 +: ONE] = dut.list_memory_i.shown_word;
-    assign arriving[2*ONE*0 + ONE +: ONE] = upper ? dut.list_memory_i.run_memory_0_i.run_bank_i.fetched
-        : dut.list_memory_i.run_memory_1_i.run_bank_i.fetched;
-end endgenerate
 wire reads = playing && !restart && !screen_starts;
 
 // The list in view has been read for a while when a row begins, and the other list shows nothing.
-reg known_1 = 0;
-always @(posedge clk) known_1 <= known;
 always @* if (known) begin
-    assert (lower_reads == {PIXELS{$past(upper)}} && upper_reads == {PIXELS{!$past(upper)}});
     assert ($stable(upper) || screen_starts);
     if (row_starts || (playing && !screen_starts)) assert (upper == $past(upper) && upper == $past(upper, 2));
-end
-always @* if (known_1) begin
-    if ($past(upper, 2)) assert (upper_runs == 0);
-    else assert (lower_runs == 0);
 end
 
 genvar i, k;
 generate for (i = 0; i < PIXELS; i = i + 1) begin: banks
-    wire [2:0] held = ahead[3*i +: 3], there = filled[3*i +: 3];
-    wire [1:0] head = head_slot[2*i +: 2], coming = on_the_way[2*i +: 2];
+    wire [2:0] held = dut.read_ahead{i}_i.taken_slots, there = dut.read_ahead{i}_i.filled_slots;
+    wire [1:0] head = dut.read_ahead{i}_i.head_slot, coming = dut.read_ahead{i}_i.on_the_way;
+    wire [1:0] put_slot = dut.read_ahead{i}_i.put_slot, read_place = dut.read_ahead{i}_i.read_place;
+    always @* if (known) begin
+        assert (dut.list_memory{i}_i.run_memory_0_i.run_bank_i.reads == $past(upper));
+        assert (dut.list_memory{i}_i.run_memory_1_i.run_bank_i.reads == !$past(upper));
+        if ($past(known)) assert (($past(upper, 2) ? dut.list_memory{i}_i.upper_run_word
+            : dut.list_memory{i}_i.lower_run_word) == 0);
+    end
     wire [4:0] head_place = PIXELS == 1 ? place : (place + (1 - i)) >> 1;
     wire [4:0] most = blank - 5;
     always @* if (known && reads) begin
         assert (held <= 4 && there <= 4 && held == there + coming[0] + coming[1]);
-        assert (put_slot[2*i +: 2] == head + there[1:0]);
-        assert (read_place[2*i +: 2] == (head_place + held) % PLACES);
+        assert (put_slot == head + there[1:0]);
+        assert (read_place == (head_place + held) % PLACES);
         if (visible) assert (held >= 3);
         else if (blank > 5) assert (held >= (most > 4 ? 4 : most));
     end
@@ -215,9 +155,9 @@ generate for (i = 0; i < PIXELS; i = i + 1) begin: banks
         wire [1:0] slot = head + k;
         wire [ONE-1:0] run = of(bank_0, bank_1, number);
         always @* if (known && reads) begin
-            if (k < there) assert (slots[ONE*(4*i + slot) +: ONE] == run);
-            else if (k == there && coming[1]) assert (arriving[2*ONE*i +: ONE] == run);
-            else if (k < held) assert (arriving[2*ONE*i + ONE +: ONE] == run);
+            if (k < there) assert (dut.read_ahead{i}_i.slots{slot} == run);
+            else if (k == there && coming[1]) assert (dut.list_memory{i}_i.shown_word == run);
+            else if (k < held) assert (dut.list_memory{i}_i.run_memory{!upper}_i.run_bank_i.fetched == run);
         end
     end
 end endgenerate

@@ -28,16 +28,9 @@
 module render_counters;
 ray_caster_renderer dut (.*);
 
-reg known = 0;
 reg last_restart;
-always @(posedge clk) begin
-    known <= 1;
-    last_restart <= reset || progress_start_screen || dut.scan_start_row;
-end
-always @* begin
-    if (!known) assume (reset);
-    if (known && !$past(progress_start_screen) && !$past(reset)) assume ($stable(picture_run));
-end
+always @(posedge clk) last_restart <= reset || progress_start_screen || dut.scan_start_row;
+always @* if (known && !$past(progress_start_screen) && !$past(reset)) assume ($stable(picture_run));
 
 // Conditions that the line buffer relies on.
 always @* if (known) begin

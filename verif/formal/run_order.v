@@ -21,12 +21,7 @@ module run_order;
 localparam SLOTS = 4;
 run_queue dut (.*);
 
-reg known = 0;
-always @(posedge clk) known <= 1;
-always @* begin
-    if (!known) assume (reset);
-    if (take) assume (offered);
-end
+always @* if (take) assume (offered);
 
 // All runs in the queue, and those before the picked one.
 (* anyseq *) reg pick;
@@ -70,12 +65,8 @@ wire [1:0] on_the_way = dut.read_ahead_i.on_the_way;
 wire [1:0] read_place = dut.read_place, write_place = dut.write_place;
 wire [3:0] place = read_place + older - ahead, next_place = read_place + dut.unread;
 wire [1:0] slot = dut.read_ahead_i.head_slot + older[1:0], put_slot = dut.read_ahead_i.put_slot;
-wire [RUN_BITS-1:0] in_slot =
-    slot == 0 ? \dut.read_ahead_i.slots[0] : slot == 1 ? \dut.read_ahead_i.slots[1] :
-    slot == 2 ? \dut.read_ahead_i.slots[2] : \dut.read_ahead_i.slots[3] ;
-wire [RUN_BITS-1:0] in_memory =
-    place % PLACES == 0 ? \dut.run_memory_i.run_bank_i.memory[0] :
-    place % PLACES == 1 ? \dut.run_memory_i.run_bank_i.memory[1] : \dut.run_memory_i.run_bank_i.memory[2] ;
+wire [RUN_BITS-1:0] in_slot = dut.read_ahead_i.slots{slot};
+wire [RUN_BITS-1:0] in_memory = dut.run_memory_i.run_bank_i.memory{place % PLACES};
 always @* if (known) begin
     assert (ready == (dut.unread != PLACES) && room == (dut.unread <= PLACES - COLUMNS));
     assert (dut.unread <= PLACES && in_slots <= SLOTS && ahead <= SLOTS && all == ahead + dut.unread);

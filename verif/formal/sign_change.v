@@ -25,7 +25,7 @@ module sign_change;
 localparam G = DIVISOR_BITS - 1, Q = QUOTIENT_BITS, STAGES = CYCLES - 1;
 first_change dut (.*);
 
-reg known = 0, picked;
+reg picked;
 (* anyseq *) reg pick;
 reg [5:0] age;
 reg [CYCLES-1:0] started;
@@ -35,7 +35,6 @@ wire below = division_value[LINE_BITS-1], falls = division_growth[G];
 wire [LINE_BITS-1:0] first = below ? ~division_value : division_value;
 wire [G:0] size = falls ? -division_growth : division_growth;
 always @(posedge clk) begin
-    known <= 1;
     started <= reset ? 0 : {started, start};
     if (reset) picked <= 0;
     else if (start && pick) begin
@@ -63,43 +62,17 @@ always @(posedge clk) begin
 end
 
 // Invariants: the outputs of each stage.
-wire [Q-1:0] digits [0:STAGES-1];
-wire [G-1:0] rest [0:STAGES-1], divisor [0:STAGES-1];
 genvar i;
 generate
-    if (STAGES > 0) begin
-        assign digits[0] = dut.division_stage_0_i.next_digits, rest[0] = dut.division_stage_0_i.next_remainder;
-        assign divisor[0] = dut.division_stage_0_i.next_divisor;
-    end
-    if (STAGES > 1) begin
-        assign digits[1] = dut.division_stage_1_i.next_digits, rest[1] = dut.division_stage_1_i.next_remainder;
-        assign divisor[1] = dut.division_stage_1_i.next_divisor;
-    end
-    if (STAGES > 2) begin
-        assign digits[2] = dut.division_stage_2_i.next_digits, rest[2] = dut.division_stage_2_i.next_remainder;
-        assign divisor[2] = dut.division_stage_2_i.next_divisor;
-    end
-    if (STAGES > 3) begin
-        assign digits[3] = dut.division_stage_3_i.next_digits, rest[3] = dut.division_stage_3_i.next_remainder;
-        assign divisor[3] = dut.division_stage_3_i.next_divisor;
-    end
-    if (STAGES > 4) begin
-        assign digits[4] = dut.division_stage_4_i.next_digits, rest[4] = dut.division_stage_4_i.next_remainder;
-        assign divisor[4] = dut.division_stage_4_i.next_divisor;
-    end
-    if (STAGES > 5) begin
-        assign digits[5] = dut.division_stage_5_i.next_digits, rest[5] = dut.division_stage_5_i.next_remainder;
-        assign divisor[5] = dut.division_stage_5_i.next_divisor;
-    end
     for (i = 0; i < STAGES; i = i + 1) always @* if (known && picked && age == i) begin
-        assert (divisor[i] == g && bits == (y[Q-1:0] << 2 * i) && q >> 2 * i == 0);
-        if (fits) assert (digits[i] == (next_bits | next_q) && rest[i] == next_r);
+        assert (dut.division_stage{i}_i.next_divisor == g && bits == (y[Q-1:0] << 2 * i) && q >> 2 * i == 0);
+        if (fits) assert (dut.division_stage{i}_i.next_digits == (next_bits | next_q)
+            && dut.division_stage{i}_i.next_remainder == next_r);
     end
 endgenerate
 
 // The claim.
 always @* begin
-    if (!known) assume (reset);
     if (picked) assume (!(start && pick));
     assume (!size[G]);
     if (known) assert (dut.under_way == started && done == started[CYCLES-1]);

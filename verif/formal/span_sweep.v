@@ -101,11 +101,10 @@ endfunction
 assign winner_word = gap ? nobody : first_seen;
 
 // The table, and a pass from its start to its end.
-reg known = 0, runs;
+reg runs;
 reg [1:0] tested, present, heir_number;
 reg [E-1:0] tested_word;
 always @(posedge clk) begin
-    known <= 1;
     if (reset) runs <= 0;
     else if (start || done) runs <= start;
     if (read) {tested, tested_word} <= {place, place == 0 ? entry_0 : place == 1 ? entry_1 : entry_2};
@@ -115,10 +114,7 @@ end
 wire [E-1:0] tested_entry = tested == 0 ? entry_0 : tested == 1 ? entry_1 : entry_2;
 wire [E-1:0] present_entry = present == 0 ? entry_0 : present == 1 ? entry_1 : entry_2;
 wire [E-1:0] heir_entry = heir_number == 0 ? entry_0 : heir_number == 1 ? entry_1 : entry_2;
-always @* begin
-    if (!known) assume (reset);
-    if (runs) assume (!start);
-end
+always @* if (runs) assume (!start);
 
 // Questions and answers.
 wire scan = dut.state == 1, order = dut.state == 2, cross = dut.state == 3, rivals = dut.state == 4;

@@ -39,7 +39,7 @@ wire [7:0] place = dut.place;
 
 // The frame that is drawn: from the cycle after new_frame until its last entry is written, or it is abandoned.
 // waits: a whole frame, maybe a black one, waits for StartScreen. whole[i]: list i is a whole frame.
-reg known = 0, begins, drawing, waits, black;
+reg begins, drawing, waits, black;
 reg [1:0] whole;
 reg [7:0] rows_in, entries_in, dealt;
 reg [UNITS-1:0] at_work;
@@ -47,7 +47,6 @@ wire completes = drawing && row_written && rows_in == ROWS - 1;
 wire takes_scene = start_screen && !drawing, hands_over = takes_scene && waits;
 wire [7:0] rows_taken = rows_in + row_written, entries_taken = entries_in + write;
 always @(posedge clk) begin
-    known <= 1;
     if (reset) begin
         {begins, drawing, at_work} <= 0;
         whole <= 0;
@@ -66,7 +65,6 @@ always @(posedge clk) begin
     end
 end
 always @* begin
-    if (!known) assume (reset);
     if ($past(known) && $past(start_screen)) assume (!start_screen);
     if (drawing && rows_taken >= dealt) assume (!dut.offered);
 end

@@ -7,8 +7,11 @@ it may use the following names without declaring them:
 - a port of such a module. Outputs are wires, and so is an input that the property assigns. All other inputs are
   arbitrary: they are ports of the completed module.
 - a field of a port that is a record: `rect_axis` is a part of `rect_word`, as the comment of the generated port says.
-- a name inside an instance, such as `dut.state`, or `\\dut.banks[1] ` for a word of a memory.
+- a name inside an instance, such as `dut.state`, or `\\dut.banks[1] ` for a word of a memory. An index in braces
+  chooses one of several: `dut.banks{number}` is one of the words; `dut.run_bank{number}_i.state` is in one of the
+  instances `run_bank_0_i`, `run_bank_1_i` and so on, or in the only one, `run_bank_i`.
 - a fact in capitals, which becomes a constant.
+- `known`, which is 0 in the first cycle; that one is assumed to be a cycle of reset.
 
 `DUT stands for the first module of the proof. `$past(name)` and `$past(name, 2)` are values of earlier cycles, which
 are registers, so that the depth of an induction does not grow; `$stable(name)` compares with the cycle before.
@@ -18,6 +21,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from itertools import count, takewhile
 from pathlib import Path
 
 WRAPPERS = Path(__file__).parent
@@ -34,6 +38,7 @@ INSTANCE = re.compile(r"^ *(\w+|`DUT) (\w+) \(", re.M)
 DECLARATION = re.compile(r"^ *(?:\(\* \w+ \*\) )?(?:wire|reg|genvar|localparam) ([^;]*);", re.M)
 TYPE = re.compile(r"^(?:signed )?(?:\[.*?\] )?")
 PAST = re.compile(r"\$past\(([\w.]+)(?:, (\d))?\)")
+CHOICE = re.compile(r"(?<![\w.`$\\])([a-z]\w*(?:\.\w+)+)\{([^{}]*)\}(\w*(?:\.\w+(?:\{[^{}]*\}\w*)?)*)")
 PATH = re.compile(r"(?<![\w.`$\\])[a-z]\w*(?:\.[a-z]\w*)+|\\(?:\w+\.)+\w+\[\d+\](?= )")
 
 
@@ -65,6 +70,10 @@ def completed(
     text = re.sub(r"\$stable\(([\w.]+)\)", r"(\1 == $past(\1))", text.replace("`DUT", modules[0]))
     body = _body(text, name)
     instances = {label: module for module, label in INSTANCE.findall(body) if f"{module}.v" in verilog}
+    found = 1
+    while found:  # the outermost instance first
+        text, found = CHOICE.subn(lambda match: _chosen(match[1], match[2], match[3], instances, verilog), text)
+    body = _body(text, name)
     declared = _declared(body)
     assigned = {each for left in re.findall(r"\bassign ([^=]*)=", body) for each in re.findall(r"\w+", left)}
     ports: dict[str, tuple[str, str]] = {}
@@ -91,10 +100,15 @@ def completed(
         if port not in declared and (way == "output" or port in assigned)
     ]
     used = set(re.findall(r"\w+", body)) - declared.keys() - ports.keys()
+    if "known" not in declared and re.search(r"(?<![.\w])known\b", body):
+        lines.append("reg known = 0;")
+        known = "always @(posedge clk) known <= 1;\nalways @* if (!known) assume (reset);"
+        before, start, after = text.partition(f"module {name};\n")
+        text = before + start + after.replace("\nendmodule", f"\n{known}\nendmodule", 1)
     lines += [f"wire {field} = {part};" for field, part in fields.items() if field.split()[-1] in used]
     peeked = _peeked(body, instances, verilog)
     lines += [f"(* hierconn *) wire {kind}\\{path} ;" for path, kind in peeked.items()]
-    kinds = {port: kind for port, (_, kind) in ports.items()} | peeked | declared
+    kinds = {port: kind for port, (_, kind) in ports.items()} | {"known": ""} | peeked | declared
     text, lines = _with_past(
         text, lines, kinds | {field.split()[-1]: field.rpartition(" ")[0] + " " for field in fields}
     )
@@ -129,6 +143,29 @@ def _fields(generated: str) -> dict[str, str]:
     return found
 
 
+def _module(names: Sequence[str], instances: Mapping[str, str], verilog: Mapping[str, str]) -> str:
+    """Return the text of the module of an instance, whose names are given from the outermost one in; empty if none."""
+    module = instances[names[0]]
+    for name in names[1:]:
+        instance = re.search(rf"^(\w+) {name} \(", verilog.get(f"{module}.v", ""), re.M)
+        module = instance[1] if instance else ""
+    return verilog.get(f"{module}.v", "")
+
+
+def _chosen(before: str, index: str, after: str, instances: Mapping[str, str], verilog: Mapping[str, str]) -> str:
+    """Return an expression for a name with an index in braces, given the texts before them, in them and after them."""
+    *outer, last = before.split(".")
+    if after:
+        end, dot, rest = after.partition(".")
+        numbered = (f"{before}_{number}{end}" for number in count())
+        found = [*takewhile(lambda path: _module(path.split("."), instances, verilog), numbered)] or [before + end]
+        paths = [path + dot + rest for path in found]
+    else:
+        [size] = [memory for _, _, name, memory in SIGNAL.findall(_module(outer, instances, verilog)) if name == last]
+        paths = [f"\\{before}[{number}] " for number in range(int(size[4:-1]) + 1)]
+    return f"({''.join(f'{index} == {at} ? {path} : ' for at, path in enumerate(paths[:-1]))}{paths[-1]})"
+
+
 def _peeked(body: str, instances: Mapping[str, str], verilog: Mapping[str, str]) -> dict[str, str]:
     """Return the names inside instances that a property uses, with their types; flattening connects them."""
     found = {}
@@ -137,13 +174,8 @@ def _peeked(body: str, instances: Mapping[str, str], verilog: Mapping[str, str])
         first = next((place for place, name in enumerate(names) if name in instances), None)
         if first is None:
             continue  # a name in a block of the property
-        *inside, last = names[first + 1 :]
-        module = instances[names[first]]
-        for name in inside:
-            instance = re.search(rf"^(\w+) {name} \(", verilog.get(f"{module}.v", ""), re.M)
-            module = instance[1] if instance else ""
-        for _, kind, signal, memory in SIGNAL.findall(verilog.get(f"{module}.v", "")):
-            if signal == last and bool(memory) == ("[" in path):
+        for _, kind, signal, memory in SIGNAL.findall(_module(names[first:-1], instances, verilog)):
+            if signal == names[-1] and bool(memory) == ("[" in path):
                 found[path.lstrip("\\")] = kind
     return found
 
