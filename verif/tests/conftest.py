@@ -74,6 +74,9 @@ Bench = Callable[..., Path]
 # One store for all tests, the commands that they run and all workers, so that each model is built once.
 os.environ.setdefault(MODELS_VARIABLE, str(BUILD / "model"))
 
+FEW_CYCLES = 1500
+"""Cycles of a leaf test in MyHDL if slow tests are left out."""
+
 WITH_MYHDL = pytest.StashKey[bool]()
 """True if the leaves of a test are simulated in MyHDL too."""
 
@@ -109,10 +112,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def one_set_in_myhdl(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Simulate MyHDL for one parameter set of each leaf test, or for all that are recorded; the Verilog for all.
 
-    With all cases of the long tests, unless slow tests are left out.
+    With all cases of the long tests, and all cycles in MyHDL, unless slow tests are left out.
     """
     recorded = RECORD_VARIABLE in os.environ
-    monkeypatch.setattr(LeafBench, "few", not recorded and request.config.option.markexpr == "not slow")
+    few = not recorded and request.config.option.markexpr == "not slow"
+    monkeypatch.setattr(LeafBench, "few", few)
+    monkeypatch.setattr(Leaf, "most_in_myhdl", FEW_CYCLES if few else None)
     monkeypatch.setattr(Leaf, "with_myhdl", recorded or request.node.stash.get(WITH_MYHDL, True))
     monkeypatch.setattr(Leaf, "recorder", record_test if recorded else None)
 
