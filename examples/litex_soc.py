@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from raycaster.configuration import Configuration
 from raycaster.design.decide import configure
@@ -45,8 +46,13 @@ def pins(config: Configuration) -> list[tuple]:
 class RayCasterSoC(SoCCore):
     """A VexRiscv, a memory for its program, LEDs, and the ray tracer with a VGA output."""
 
+    comb: Any
+    """Migen creates it on first access."""
+
     def __init__(self, platform: GenericPlatform, config: Configuration, directory: Path):
-        self.crg = CRG(platform.request("clk"), platform.request("reset"))
+        clk: Any = platform.request("clk")
+        reset: Any = platform.request("reset")
+        self.crg = CRG(clk, reset)
         super().__init__(
             platform,
             clk_freq=config.screen_geometry.clock_hz,
