@@ -254,7 +254,7 @@ def test_a_rectangle_is_left_out_and_shown_again(library):
 
 
 def test_the_longest_vectors(library):
-    basis = ((-512, 511, 0), (1, -1, 256), (511, -512, -511))
+    basis = ((-512, 511, 511), (1, -1, 256), (511, -512, -512))
     device = Device(library, Registers(EVERYTHING))
     assert device.shown().basis == UNTURNED
     assert device.set_basis(basis) == Error.OK

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from conftest import ROOT, refusal
 
+from raycaster import level
 from raycaster.cli.import_level import main
 from raycaster.level import load_level
 from raycaster.scene import Scene, load_scene, packaged_scenes
@@ -96,6 +97,41 @@ def test_a_room_has_six_rectangles(tmp_path):
     assert {rect.corners[0][0] for rect in scene.rect if rect.axis == 0} == {32, 96}
     assert (scene.camera.position, scene.camera.yaw) == ((48, 48, 40), 90)
     assert scene.light and (scene.light.position, scene.light.shade) == ((80, 80, 84), 0.5)
+
+
+@pytest.mark.parametrize(("arrow", "yaw"), [("^", 0), (">", 90), ("v", 180), ("<", -90)])
+def test_an_arrow_gives_the_view(arrow, yaw, tmp_path):
+    path = tmp_path / "level.txt"
+    path.write_text(f"###\n#{arrow}#\n###\n")
+    assert load_level(path).camera.yaw == yaw
+
+
+def test_looks_that_are_not_said(tmp_path):
+    """A start, a light, a space and a floor without a colour look like the usual floor; colours are dimmed alike."""
+    head = "side 0.5\n# wall #406080 checker #204060 16\n. floor #102030 ceiling none\n"
+    path = tmp_path / "level.txt"
+    path.write_text(f"{head}c floor\n\n#######\n#.^c* #\n#######\n")
+    scene = load_level(path)
+    assert [(rect.name, rect.colour) for rect in scene.rect if rect.axis == 2] == [("floor 1", (16, 32, 48))]
+    walls = [rect for rect in scene.rect if rect.axis != 2]
+    assert {(rect.pattern, rect.cell) for rect in walls} == {("checker", 16)}
+    for axis, looks in ((0, ((64, 96, 128), (32, 64, 96))), (1, ((32, 48, 64), (16, 32, 48)))):
+        assert {(rect.colour, rect.colour2) for rect in walls if rect.axis == axis} == {looks}
+    path.write_text(f"{head}  floor #ffffff\n\n#######\n#.^.. #\n#######\n")
+    assert {rect.colour for rect in load_level(path).rect if rect.axis == 2} == {(16, 32, 48), (255, 255, 255)}
+
+
+def test_a_map_at_its_limits(tmp_path, monkeypatch):
+    """As many rectangles as the hardware holds, and as many bytes as are read, are not too many."""
+    path = tmp_path / "level.txt"
+    path.write_text("####\n#.*#\n#>.#\n####\n")
+    for name, size in (("MOST_RECTANGLES", 6), ("MOST_BYTES", path.stat().st_size)):
+        with monkeypatch.context() as patch:
+            patch.setattr(level, name, size)
+            load_level(path)
+            patch.setattr(level, name, size - 1)
+            with pytest.raises(level.LevelError):
+                load_level(path)
 
 
 def test_the_last_cell_ends_with_the_world(tmp_path):
