@@ -54,18 +54,23 @@ def any_surface(random, mirrors: int):
 
 @by(reflections=[0, 1])
 def test_surface_cells(reflections, leaf_of, random):
-    """The cell of each column, in as many cycles as the model says; several levels are apart."""
+    """The cell of each column, in as many cycles as the model says; several levels are apart; a reset ends a walk."""
     config = span_config(screen="tiny", rectangles=4, reflections=reflections, turn=True, patterns=True)
     leaf = leaf_of(cells_bench, config, step_slope=lambda: Vector(step_bits(config)), step=bit, kind=2)
     leaf.case({"reset": 1})
-    turns = 0
+    turns, painted = 0, {}
     for number in range(leaf.some(240)):
         slope, axis, distance, back, ahead, eye, backs, start, stop = any_surface(random, reflections)
         kind, size, level = int(random.integers(4)), int(random.integers(6)), number % (reflections + 1)
         inputs = by_axis("slope_", (one.at_0 for one in slope)) | by_axis("step_slope_", (one.growth for one in slope))
         inputs |= chain_inputs(Chain(0, COLUMNS, eye, backs)) | {"rect_cell": size, "reset": 0, "paint": 1}
         inputs |= named("winner", {"axis": axis, "back": int(back), "distance": distance})
-        leaf.case(inputs | {"kind": kind, "level": level, "seen": level, "column": start, "stop": stop, "step": 0})
+        inputs |= {"level": level, "seen": level, "column": start, "stop": stop, "step": 0}
+        if number % 3 == 0:
+            # A reset ends the painting of a checker.
+            leaf.stimulus += [inputs | {"kind": 1}, *[{"paint": 0}] * (number // 3 % 32), {"reset": 1}]
+            kind *= int(random.integers(2))
+        leaf.case(inputs | {"kind": kind})
         drawing = Drawing(SpanModel(NOTHING, (0, 0, 0), (0, 0, 0), COLUMNS, 0), slope)
         along, cells = OTHER_AXES[axis], {}
         for place in ((), (0, 1), (1,), (0,))[kind]:
@@ -78,6 +83,9 @@ def test_surface_cells(reflections, leaf_of, random):
         leaf.expect({"painted": int(not cells)})
         leaf.stimulus += [{"paint": 0}] * drawing.now
         leaf.expect({"painted": 1}, when=cells)
+        for other, shown in painted.items():
+            leaf.case({"paint": 0, "seen": other}, shown if other != level else {})
+        leaf.case({"paint": 0, "seen": level})
         column = start
         while True:
             # The definition, in each column up to the next change.
@@ -90,6 +98,8 @@ def test_surface_cells(reflections, leaf_of, random):
             odd = {f"odd_{axis}": cells[place].cell % 2 for place, axis in enumerate("uv") if place in cells}
             leaf.case({"step": 0}, odd | {"next_column": until, "stepped": 0})
             if until == stop:
+                painted[level] = odd | {"next_column": stop}
+                leaf.case({"step": 1, "place": stop - 1}, {"stepped": 1})
                 break
             turns, column, drawing.now = turns + 1, until, 0
             for one in cells.values():
