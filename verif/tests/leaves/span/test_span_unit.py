@@ -60,7 +60,7 @@ def unit_bench(leaf_of, config: Configuration):
 
 
 def drawn(
-    leaf, frames: Sequence[Frame], ready=lambda: 1, most: int | None = None, cuts: Sequence[int] = ()
+    leaf, frames: Sequence[Frame], ready=lambda: 1, most: int | None = None, cuts: Sequence[tuple[Frame, int]] = ()
 ) -> Iterator[tuple[list[Row], list[Row]]]:
     """Simulate frames, in Verilog with unknown values at power-up; yield the rows of each, and those of the model.
 
@@ -69,7 +69,7 @@ def drawn(
         frames: frames to draw.
         ready: returns whether a run is taken in the next cycle.
         most: number of rows to draw, all by default.
-        cuts: for each frame, cycles after which a reset ends it, before it is drawn as a whole.
+        cuts: for each frame, one that is begun before it, and the cycles after which a reset ends that one.
     """
     screen = leaf.screen
     count = most or screen.rows
@@ -77,7 +77,8 @@ def drawn(
     begins, stimulus = [], [{"reset": 1, "first_row": 0, "store": 0, "run_ready": 1}] * 3
     for frame, rows, cut in zip_longest(frames, expected, cuts):
         if cut is not None:
-            stimulus += [*frame_inputs(frame), *[{}] * cut, {"reset": 1}]
+            begun, cycles = cut
+            stimulus += [*frame_inputs(begun), *[{}] * cycles, {"reset": 1}]
         stimulus += frame_inputs(frame)
         # The first row begins two cycles after first_row.
         begins.append(len(stimulus))
@@ -185,18 +186,32 @@ def test_packaged_scenes(name, leaf_of):
 
 
 def test_a_reset_ends_a_row(leaf_of, random):
-    """After a reset in any cycle, a row is drawn as ever: rows with much work in few cycles."""
+    """After a reset in any cycle of a row with all kinds of work, the row of another scene is drawn as ever.
+
+    So is the same row anew, whose first run ends where the one ended that was held.
+    """
     config = DESIGNS[-1]
     leaf = unit_bench(leaf_of, config)
 
-    def cycles(frame: Frame) -> int:
-        return next(frame.model(leaf.screen).rows(leaf.screen, frame.basis)).cycles
+    def frames(least: int, most: int, *kinds: str) -> Iterator[tuple[Frame, int]]:
+        """Yield frames whose first row takes so many cycles and steps of these kinds, and these cycles."""
+        while True:
+            frame = any_frame(random, config)
+            row = next(frame.model(leaf.screen).rows(leaf.screen, frame.basis))
+            if least <= row.cycles <= most and all(row.steps[kind] for kind in kinds):
+                yield frame, row.cycles
 
-    for frame in sorted(busy_frames(random, config, 5), key=cycles)[:3]:
-        every = 15 if leaf.few else 2
-        cuts = range(int(random.integers(every)), cycles(frame), every)
-        for rows, wanted in drawn(leaf, [frame] * len(cuts), most=1, cuts=cuts):
-            assert rows == [replace(row, steps=Row().steps) for row in wanted]
+    short = [*islice(frames(0, 180), 2), *islice(frames(100, 180, "lit"), 2), *islice(frames(100, 180, "cells"), 2)]
+    empty = replace(short[0][0].table, enabled=np.zeros(config.rectangles, dtype=bool))
+    after = [*(frame for frame, _ in short), replace(short[0][0], table=empty)]
+    busy = [*islice(frames(250, 900, "lit", "cells", "corner tests", "divisions"), 3)]
+    every = 15 if leaf.few else 2
+    cuts = [(one, cut) for one, cycles in busy for cut in range(int(random.integers(every)), cycles, every)]
+    after = [after[number % len(after)] for number in range(len(cuts))]
+    again = [(one, cut) for one, cycles in short[2:] for cut in range(int(random.integers(every)), cycles, every)]
+    rows = drawn(leaf, [*after, *(one for one, _ in again)], most=1, cuts=[*cuts, *again])
+    for (_, cut), (found, wanted) in zip([*cuts, *again], rows, strict=True):
+        assert found == [replace(row, steps=Row().steps) for row in wanted], f"after {cut} cycles"
 
 
 def test_runs_wait(leaf_of, random):
