@@ -8,16 +8,9 @@
 #ifndef MACHINE_H
 #define MACHINE_H
 
-#include <cstdint>
 #include <string>
-#include <vector>
 
-#include "Vmachine.h"
-
-// A StartScreen, a write, or both in one clock.
-struct Event {
-    uint32_t clock, start_screen, takes_scene, again, written, address, writedata, byteenable;
-};
+#include "host.h"
 
 // Receiver: samples each bit in its middle.
 class SerialPort {
@@ -46,18 +39,18 @@ private:
     uint8_t byte = 0;
 };
 
-class Machine {
+class Machine : public Host<Machine> {
+    friend Host;
+
 public:
     std::vector<uint32_t> pixels; // since the last vertical sync; bytes red, green, blue, 255
-    std::vector<Event> events;
     std::string text;
     uint64_t clocks = 0;
     uint32_t busy = 0; // clocks in which a picture was computed
 
     virtual ~Machine() = default;
-    explicit Machine(VerilatedContext *context) : top{context} {
+    explicit Machine(VerilatedContext *context) : Host{context} {
         top.ready = 0;
-        top.host_read = top.host_write = 0;
         top.buttons = 0;
         top.clk = 0;
         for (int count = 0; count < RESET_CLOCKS; count++) clock();
@@ -65,24 +58,6 @@ public:
     }
 
     void hold(uint32_t buttons) { top.buttons = buttons; }
-
-    // Writes over the ray tracer's bus, if there is no processor.
-    void write(uint32_t address, uint32_t word) {
-        top.host_write = 1;
-        top.host_address = address;
-        top.host_writedata = word;
-        request();
-        top.host_write = 0;
-    }
-
-    uint32_t read(uint32_t address) {
-        top.host_read = 1;
-        top.host_address = address;
-        request();
-        top.host_read = 0;
-        while (!top.host_readdatavalid) clock();
-        return top.host_readdata;
-    }
 
     // Runs until the vertical sync begins.
     void run_frame() {
@@ -96,14 +71,10 @@ public:
     }
 
 protected:
-    Vmachine top;
-
     // Called before each rising edge of the clock; to be overridden to observe more.
     virtual void see() {}
 
 private:
-    static const int RESET_CLOCKS = 8;
-
     bool vga_clk = false, vs = true;
 #if CLOCKS_PER_BIT
     SerialPort serial;
@@ -111,14 +82,6 @@ private:
 
     // Extracts a pixel's channel, with its lowest bit at `low`.
     static uint32_t channel(uint32_t colour, int low) { return colour >> low & ((1u << COLOUR_BITS) - 1); }
-
-    // Holds a request until it is accepted.
-    void request() {
-        for (bool waits = true; waits; clock()) {
-            top.eval();
-            waits = top.host_waitrequest;
-        }
-    }
 
     // Runs a clock; returns true if the vertical sync begins.
     bool clock() {

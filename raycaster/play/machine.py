@@ -23,6 +23,9 @@ from raycaster.sim.simulator import BUILD, SimulationError, build_program, conve
 
 TOP = "machine"
 BENCH, LOOP, MACHINE = (Path(__file__).with_name(f"{TOP}.{kind}") for kind in ("v", "cpp", "h"))
+HOST = Path(__file__).with_name("host.h")
+"""Header of loops that drive a design's bus."""
+
 SIGNS = Path(__file__).with_name("signs.h")
 """Header that the compiler includes before a design."""
 
@@ -203,6 +206,6 @@ def build_machine(config: Configuration, build: Path = BUILD, *, processor: bool
     """
     made_of = machine_sources(config, build, processor=processor)
     return build_program(
-        made_of.name, TOP, made_of.files, [LOOP, MACHINE, SIGNS], build=build, flags=made_of.flags,
+        made_of.name, TOP, made_of.files, [LOOP, MACHINE, HOST, SIGNS], build=build, flags=made_of.flags,
         compiler=("-O2", "-include", str(SIGNS), *made_of.defines),
     )  # fmt: skip

@@ -14,8 +14,8 @@ import raycaster.sw
 from raycaster.configuration import MOST_RECTANGLES, Configuration
 from raycaster.design.options import BUILD
 from raycaster.errors import UserError, not_installed
+from raycaster.play.machine import HOST, SIGNS, TOP, MachineSources, machine_sources
 from raycaster.play.machine import MACHINE as MACHINE_HEADER
-from raycaster.play.machine import SIGNS, TOP, MachineSources, machine_sources
 from raycaster.registers import address_bits
 from raycaster.rtl.common.widths import column_bits
 from raycaster.runs.tools import TIMEOUT, ToolError, run_program
@@ -106,7 +106,7 @@ def machine_wasm(
     defines = (*tapped, *design.defines, f"-DWHOLE_FRAMES={int(config.facts.whole_frames and not draws)}")
     made_with = (tool, _compiler(), flags, defines, text, DIRECT)
     header = DRAWING[1] if draws else MACHINE_HEADER
-    sources = [*design.files, *MACHINE, header, SIGNS, DRIVER, *DRIVER_HEADERS]
+    sources = [*design.files, *MACHINE, header, HOST, SIGNS, DRIVER, *DRIVER_HEADERS]
     name = f"{design.name}-tapped" if taps else design.name
     with made(models(build), f"{name}-{WASI}", sources, made_with) as (place, fresh):
         directory = place.resolve()
@@ -118,7 +118,7 @@ def machine_wasm(
             verilate(tool, directory, TOP, files, flags, MACHINE[:2])
             direct = (f"-DDIRECT={int(draws and is_direct(directory))}",)
             library = library_sources(tool)
-            includes = (directory, HERE, header.parent, SOFTWARE, library, library / "vltstd")
+            includes = (directory, HERE, HOST.parent, SOFTWARE, library, library / "vltstd")
             _link(
                 directory, TOP, WASI, "-mexec-model=reactor",
                 # The driver is C, which allows narrowing conversions.
