@@ -3,7 +3,7 @@
 "use strict";
 
 const CLOCKS = [25, 74.25];      // MHz, for which the frame rate of hardware is given
-const REST = 2;                  // pause after a check of a picture, in lengths of that check
+const REST = 4;                  // pause after a check of a picture, in lengths of that check
 const REPORTING = 100;           // ms between changes of the text and the plans while the picture moves
 const CLICK_REACH = 4;           // most movement of a click, in pixels of the page
 const ADDRESS_DELAY = 400;       // ms from a change to the address with it
