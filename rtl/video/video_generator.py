@@ -10,7 +10,7 @@ from raycaster.screens import Screen
 
 
 @block
-def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0, at_start: bool = False):
+def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0):
     """Generate the free-running timing of the monitor, and send it the pixels.
 
     A pixel takes `screen.clocks_per_pixel` clk cycle(s), and reaches the outputs one pixel after its coordinates. With
@@ -24,13 +24,12 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0,
         scan: `Scan`; output. start_screen: strobe one row of rays (`screen.doubling` lines) before the first visible
             line, in time to render row 0. start_row: strobe at the beginning of the first line of each row, when that
             row is handed over. visible_line: high in the visible part of a line, blanked lines included. next_column:
-            strobe in the last clock of each column's last pixel there or, with at_start, of its first pixel.
+            strobe in the last clock of each column's last pixel there.
         pixel: `Pixel`; the column's colour, sampled at the end of each of its pixels.
         vga: `Vga`; output. Changes at the falling edge of vga.clk.
         screen: the screen and its timing.
         lead: number of pixels by which visible_line and next_column are early, if a pixel takes one clock; at most the
             horizontal blanking.
-        at_start: next_column comes in the first pixel of a column, not in the last.
     """
     horizontal, vertical, doubling = screen.beats, screen.vertical, screen.doubling
     first_pixel, first_line = -horizontal.blank, -vertical.blank
@@ -41,7 +40,6 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0,
     vsync_last = vsync_first + vertical.sync - 1
     hsync_active, vsync_active = horizontal.active_high, vertical.active_high
     last_repeat = doubling - 1
-    announced = 0 if at_start else last_repeat
     screen_first = first_line == -doubling
     line_before_screen = last_line if screen_first else -doubling - 1
     single = screen.clocks_per_pixel == 1
@@ -102,7 +100,7 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0,
     def announce():
         scan.start_row.next = line_start and (y >= 0) and (line_repeat == 0)
         scan.visible_line.next = in_columns
-        scan.next_column.next = pixel_end and in_columns and (pixel_repeat == announced)
+        scan.next_column.next = pixel_end and in_columns and (pixel_repeat == last_repeat)
 
     # A register, since the whole scene changes with it.
     @always(clk.posedge)
