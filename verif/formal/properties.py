@@ -24,6 +24,7 @@ from __future__ import annotations
 import itertools
 import tomllib
 from collections.abc import Callable, Iterator
+from operator import attrgetter
 from typing import Any
 
 from raycaster.configuration import Configuration
@@ -37,7 +38,6 @@ from raycaster.rtl.cull.rect_setup import SETUP_LATENCY
 from raycaster.rtl.engines import ENGINES, SEED, buffered_engine_of
 from raycaster.rtl.span.first_change import division_cycles, quotient_bits
 from raycaster.rtl.span.records import Entry
-from raycaster.screens import Screen
 from raycaster.verif.formal.alone import (
     Alone,
     BridgeAlone,
@@ -92,74 +92,41 @@ ALONE: dict[str, Callable[[Facts], Alone]] = {
 
 
 FACTS: dict[str, Callable[[Configuration], int]] = {
-    # Options, and what is decided from them.
     "SEED": lambda config: config.engine == SEED.facts.name,
-    **{
-        name.upper(): lambda config, name=name: getattr(config, name)
-        for name in (
-            "rectangles", "reflections", "units", "pixels", "groups", "fraction_bits", "divider_bits", "colour_bits",
-            "culling", "turn", "materials", "patterns", "light", "divider_steps", "scale",
-        )
-    },
     "RECT_CYCLES": lambda config: buffered_engine_of(config).rect_cycles(config),
     "PASS_LATENCY": lambda config: buffered_engine_of(config).pass_latency(config),
     "GROUP_CYCLES": lambda config: buffered_engine_of(config).group_cycles(config),
     "NEAREST": lambda config: config.rounding == "nearest",
-    # Latencies.
-    "LEAD": lambda config: int(config.screen_geometry.clocks_per_pixel == 1),
+    "LEAD": lambda config: config.screen_geometry.clocks_per_pixel == 1,
     "SETUP_LATENCY": lambda config: SETUP_LATENCY,
-    # Registers.
+    "AIM_CYCLES": lambda config: AIM_CYCLES,
+    "CYCLES": division_cycles,
     "ADDRESS_BITS": lambda config: address_bits(*config.map),
     "VERSION_WORD": lambda config: register_map(*config.map)["version"].reset,
-    # Widths.
-    **{
-        name.upper(): lambda config, name=name: getattr(widths, name.upper())
-        for name in ("basis_bits", "coordinate_bits", "distance_bits", "reflection_bits", "wide_bits")
-    },
-    **{
-        name.upper(): getattr(widths, name)
-        for name in (
-            "column_bits", "divisor_bits", "index_bits", "line_bits", "unit_bits", "offset_bits", "row_bits",
-            "position_bits", "factor_bits",
-            "eye_bits", "walk_bits", "wide_walk_bits", "share_bits",
-        )
-    },
     "SLOPE_BITS": widths.exact_slope_bits,
     "LIGHT_BITS": widths.light_slope_bits,
-    "AIM_CYCLES": lambda config: AIM_CYCLES,
     "STEEPEST": widths.steepest_slope,
     "CYCLE_BITS": lambda config: bits_for(buffered_engine_of(config).rect_cycles(config)),
-    "LOOK_BITS": lambda config: sum(look_fields(config).values()),
-    "CAMERA_BITS": lambda config: len(Camera(config).word),
-    "RECT_BITS": lambda config: len(Rect(config).word),
-    "SURFACE_BITS": lambda config: len(Surface(config).word),
-    "MIRROR_BITS": lambda config: len(Mirror(config).word),
     "QUOTIENT_BITS": quotient_bits,
-    "CYCLES": division_cycles,
-    "ENTRY_BITS": lambda config: len(Entry(config).word),
-}  # fmt: skip
-"""Numbers of a design, by the names that they have in wrappers."""
-
-SCREEN_FACTS: dict[str, Callable[[Screen], int]] = {
-    "H_VISIBLE": lambda screen: screen.beats.visible,
-    "H_FRONT": lambda screen: screen.beats.front,
-    "H_SYNC": lambda screen: screen.beats.sync,
-    "H_BACK": lambda screen: screen.beats.back,
-    "H_HIGH": lambda screen: screen.beats.active_high,
-    "V_VISIBLE": lambda screen: screen.vertical.visible,
-    "V_FRONT": lambda screen: screen.vertical.front,
-    "V_SYNC": lambda screen: screen.vertical.sync,
-    "V_BACK": lambda screen: screen.vertical.back,
-    "V_HIGH": lambda screen: screen.vertical.active_high,
-    "DOUBLING": lambda screen: screen.doubling,
-    "CLOCKS": lambda screen: screen.clocks_per_pixel,
-    "ROWS": lambda screen: screen.rows,
-    "COLUMNS": lambda screen: screen.columns,
-    "VIEW_DISTANCE": lambda screen: screen.view_distance,
-    "CENTRE": lambda screen: screen.centre_column,
-    "HORIZON": lambda screen: screen.horizon_row,
+    "LOOK_BITS": lambda config: sum(look_fields(config).values()),
+    **{
+        f"{record.__name__.upper()}_BITS": lambda config, record=record: len(record(config).word)
+        for record in (Camera, Rect, Surface, Mirror, Entry)
+    },
 }
-"""Numbers of a screen, likewise."""
+"""Numbers of a design by their names in wrappers; options, and what `widths` has, have their own names."""
+
+SCREEN_FACTS: dict[str, str] = {
+    **{
+        f"{way}_{name.upper()}": f"{part}.{name}"
+        for way, part in (("H", "beats"), ("V", "vertical"))
+        for name in ("visible", "front", "sync", "back")
+    },
+    **{"H_HIGH": "beats.active_high", "V_HIGH": "vertical.active_high", "CLOCKS": "clocks_per_pixel"},
+    **{"CENTRE": "centre_column", "HORIZON": "horizon_row"},
+    **{name.upper(): name for name in ("doubling", "rows", "columns", "view_distance")},
+}
+"""Attributes of a screen, likewise."""
 
 
 class Facts(dict[str, int]):
@@ -171,7 +138,13 @@ class Facts(dict[str, int]):
         self.screen = config.screen_geometry
 
     def __missing__(self, name: str) -> int:
-        return int(SCREEN_FACTS[name](self.screen) if name in SCREEN_FACTS else FACTS[name](self.config))
+        if name in SCREEN_FACTS:
+            return int(attrgetter(SCREEN_FACTS[name])(self.screen))
+        of_design = FACTS.get(name) or getattr(widths, name.lower(), None)
+        found = of_design(self.config) if of_design else getattr(self.config, name.lower(), getattr(widths, name, None))
+        if not isinstance(found, int):
+            raise KeyError(name)
+        return int(found)
 
     def value(self, expression: str | int) -> Any:
         """Evaluate an expression of these numbers; a number is its own value."""
