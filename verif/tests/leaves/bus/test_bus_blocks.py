@@ -123,6 +123,18 @@ def test_frame_registers(leaf_of, random):
     assert both == {"late", "list_full", "left"}
 
 
+def test_frame_counts_wrap(leaf_of):
+    """Both counters are modulo 65536, each by itself; in Verilog only, as it takes so many cycles."""
+    words = register_map(RECTANGLES, lists=True)
+    address = words["frames.counts"].address
+    made = {"bus": lambda: SceneBus(address_bits(RECTANGLES, lists=True)), "events": FrameEvents}
+    leaf = leaf_of(frame_registers, rectangles=RECTANGLES, rect_readback=WORD_BITS, readback=WORD_BITS, **made)
+    both, drawn = {"events_drawn": 1, "events_again": 1}, {"events_again": 0}
+    stimulus = [{"reset": 1, "bus_address": address}, {"reset": 0, **both}, *[{}] * 0xFFFE, drawn, {}, {}]
+    *_, last, first, second = (output["readback"] for output in leaf.run_verilog(stimulus))
+    assert [last, first, second] == [0xFFFF_FFFF, 0xFFFF_0000, 0xFFFF_0001]
+
+
 @pytest.mark.parametrize("tracer_address_bits", [5, 6])
 def test_bus_decoder(tracer_address_bits, leaf_of, random):
     """Addresses next to every edge, with one wrong bit, and anywhere."""
