@@ -233,6 +233,21 @@ def test_an_underrun_is_reported(firmware, frame, reports):
     assert not registers.file.agent.underrun
 
 
+def test_a_late_frame_delays_the_picture(firmware):
+    """While a commit is not live yet, the game goes on, but neither draws nor commits, and there is no error."""
+
+    class Late(Registers):
+        def read(self, offset: int) -> int:
+            commit = offset == 4 * MAP["control"].address and self.file.agent.frame % 2 == 0
+            return super().read(offset) | MAP["control"].pack(commit=int(commit))
+
+    machine = Machine(firmware.words, (0,) * 8, Late(CONFIG))
+    acknowledge = 4 * MAP["irq_pending"].address
+    late = [[offset for offset, _ in written] == [acknowledge] for written in machine.frames]
+    assert late == [False, True] * 4
+    assert "ray tracer:" not in machine.said
+
+
 def test_the_image_is_the_program(firmware):
     """The image begins with the linked program, without compressed instructions, and is 0 after it."""
     words = firmware.words.read_text().split()
