@@ -240,7 +240,7 @@ def test_the_map_is_that_of_the_registers(bus, standard, tmp_path):
     platform = GenericPlatform("none", [("clk", 0, Pins(1))])
     soc = SoCCore(platform, 50e6, bus_standard=standard, cpu_type=None, with_uart=False, with_timer=False)
     soc.crg = CRG(platform.request("clk"))
-    config = configure(screen="tiny", rectangles=3, bus=bus)
+    config = configure(engine="exact", screen="tiny", rectangles=3, bus=bus)
     add_ray_caster(soc, config, tmp_path / "verilog", name="tracer", origin=0x8000_0000)
     soc.finalize()
     exported = json.loads(get_csr_json(soc.csr_regions, soc.constants, soc.mem_regions))

@@ -41,7 +41,10 @@ CONFIGURATIONS = [
     configure(units=2, rectangles=3, reflections=2, materials=True, patterns=True, allow_underrun=True),
     configure(engine="exact", screen="tiny", reflections=2, turn=True, materials=True, patterns=True),
     configure(engine="exact", screen="tiny", rectangles=2, light=True),
-    configure(engine="exact", screen="tiny", reflections=2, rectangles=2, **dict.fromkeys(EXACT.facts.features, True)),
+    configure(
+        engine="exact", screen="tiny", units=2, rectangles=2, reflections=2, allow_underrun=True,
+        **dict.fromkeys(EXACT.facts.features, True),
+    ),  # fmt: skip
     configure(engine="span", rows=180, rectangles=MOST_RECTANGLES),
     configure(engine="span", screen="tiny", reflections=2, rectangles=3, scale=1),
     configure(engine="span", reflections=0, rectangles=1, colour_bits=4),
@@ -69,7 +72,7 @@ PYTHON = re.compile(r"`|\b(?:None|True|False|config|self)\b|\b[a-z_]\w*\.[a-z_]"
 
 @pytest.mark.slow_sets(
     quick=[
-        "exact-tiny48-u16-r2-m2-c8-turn-materials-patterns-light",
+        "exact-tiny48-u2-r2-m2-c8-turn-materials-patterns-light",
         "exact-tiny48-u2-r2-m1-c8-axi4lite",
         "exact-tiny48-u2-r2-m1-c8-uart",
         "span-tiny48-s2-u1-r2-m1-pairs",
