@@ -28,6 +28,7 @@ from raycaster.registers import address_bits
 from raycaster.rtl.engines import EXACT
 from raycaster.runs.tools import run_yosys
 
+EVERYTHING = dict.fromkeys(EXACT.facts.features, True)
 CONFIGURATIONS = [
     configure(),
     configure(
@@ -41,10 +42,7 @@ CONFIGURATIONS = [
     configure(units=2, rectangles=3, reflections=2, materials=True, patterns=True, allow_underrun=True),
     configure(engine="exact", screen="tiny", reflections=2, turn=True, materials=True, patterns=True),
     configure(engine="exact", screen="tiny", rectangles=2, light=True),
-    configure(
-        engine="exact", screen="tiny", units=2, rectangles=2, reflections=2, allow_underrun=True,
-        **dict.fromkeys(EXACT.facts.features, True),
-    ),  # fmt: skip
+    configure(engine="exact", screen="tiny", units=2, rectangles=2, reflections=2, allow_underrun=True, **EVERYTHING),
     configure(engine="span", rows=180, rectangles=MOST_RECTANGLES),
     configure(engine="span", screen="tiny", reflections=2, rectangles=3, scale=1),
     configure(engine="span", reflections=0, rectangles=1, colour_bits=4),
