@@ -738,6 +738,39 @@ def functions_and_bits_of_the_block(clk, a, b, y, parity, carry, pairs, kept):
     return instances()
 
 
+class Row:
+    def __init__(self):
+        self.words = [unsigned(4) for _ in range(3)]
+
+
+@program(clk=1, go=1, a=-6, b=6, x=Row, y=10, z=8, w=3)
+def seldom_forms(clk, go, a, b, x, y, z, w):
+    state = Signal(STATES.DONE)
+
+    @always_comb
+    def choose():
+        assert b < 64
+        total = 0
+        for k in range(len(x.words)):
+            total = total + x.words[k] if k < 2 else total
+        match state:
+            case STATES.IDLE:
+                y.next = concat(True, "01", b[4:2]) + a[:2] + 8
+            case STATES.BUSY:
+                y.next = (+(a - b) if bool(b) else (b[:3] & a)) % 64 + total
+            case STATES.DONE:
+                y.next = (int(a) ^ -b) & 63
+        z.next = ((b - 40) // 4) & 255
+        w.next = concat(go and b[0], state != STATES.IDLE, b[go + 1 : go])
+
+    @always(clk.posedge)
+    def turn():
+        state.next = STATES.BUSY if go else STATES.IDLE
+        print("state", state, go, b)
+
+    return instances()
+
+
 @program(clk=1, go=1, y=2, z=2)
 def a_state_in_all_cases(clk, go, y, z):
     state = Signal(STATES.IDLE)

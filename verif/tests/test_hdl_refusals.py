@@ -110,11 +110,28 @@ def process(statements: str) -> str:
                 ("result.next = a[index + 2:index]", "bit 4 may be among these, and the highest bit is 3"),
                 ("for k in range(4):\n    result.next[k] = a[k + 2:k] > 1", "bit 4 may be among these"),
                 (
-                    "match a[0]:\n    case True:\n        result.next = a\n    case _:\n        result.next = b",
+                    "match a[0]:\n    case True:\n        result.next = a\n    case _:\n        result.next = 0",
                     "a signal never is True, even if it equals it; write case 1 and case 0",
                 ),
                 ("result.next = a and b", "and, or, not: an operand is a word, not a bit; compare it with != 0"),
                 ("result.next = 2 ** index", "2 ** index: Verilog has no such operator here"),
+                ("result.next = concat(a + b, a)", "concat needs operands of a known width; assign it to a signal"),
+                ("result.next = a[2 * index:index]", "the number of these bits must be constant"),
+                (
+                    "for k in range(0, 4, a[0]):\n    result.next = k",
+                    "synthesis needs a constant step of a loop; write a number",
+                ),
+                (
+                    "result.next = a\nfor k in range(4):\n    k = 2\n    result.next[k] = b[0]",
+                    "k is the variable of a loop; assign to another one",
+                ),
+                *(
+                    (f"result.next = b\nmatch index:\n    case {value}:\n        result.next = a", said)
+                    for value, said in (
+                        ("9", "index is never 9; leave out this case"),
+                        ("'a'", "Verilog's case has numbers and states only; write if and elif"),
+                    )
+                ),
             )
         ),
         (
@@ -151,6 +168,30 @@ def process(statements: str) -> str:
             "same is the function and a variable of it; rename one",
         ),
         ("def double(x):\n    result.next = x\n" + process("double(a)"), "a function cannot drive"),
+        (
+            "def first(x):\n    for k in range(4):\n        if x[k]:\n            return k\n    return 4\n"
+            + process("result.next = first(a)"),
+            "Verilog has no return within a loop; assign the result, and return it last",
+        ),
+        (
+            "def plus(x, k=None):\n    return x ^ k\n" + process("result.next = plus(a)"),
+            "k may have no value here; assign to it first",
+        ),
+        ("share = 0.5\n" + process("result.next = a if share < b else b"), "share, of type float, has no value in Ver"),
+        (
+            "@always(a)\ndef go():\n    result.next = a ^ b\n",
+            "it does not wait for b, as synthesis does; write @always_comb, or wait for all that it reads",
+        ),
+        (
+            "one, other = tied(1, 4), tied(2, 4)\n"
+            + process("if one:\n    result.next = other\nelse:\n    result.next = 0"),
+            "process reads constants only, and Verilog would never run it",
+        ),
+        (
+            "words = [unsigned(4) for _ in range(2)]\n@always_comb\ndef go():\n    words[0].next = a\n"
+            + process("result.next = words[0] ^ words[index[0]]"),
+            "words[1]: Signal is not driven; drive it as the others",
+        ),
         (
             "def flip(x):\n    return ~x\n" + process("result.next = flip(a > b)"),
             "the result is one bit in Verilog, and may be -2 to -1 here",
