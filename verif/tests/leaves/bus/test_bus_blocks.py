@@ -130,9 +130,9 @@ def test_frame_counts_wrap(leaf_of):
     made = {"bus": lambda: SceneBus(address_bits(RECTANGLES, lists=True)), "events": FrameEvents}
     leaf = leaf_of(frame_registers, rectangles=RECTANGLES, rect_readback=WORD_BITS, readback=WORD_BITS, **made)
     both, drawn = {"events_drawn": 1, "events_again": 1}, {"events_again": 0}
-    stimulus = [{"reset": 1, "bus_address": address}, {"reset": 0, **both}, *[{}] * 0xFFFE, drawn, {}, {}]
+    stimulus = [{"reset": 1, "bus_address": address}, {"reset": 0, **both}, *[{}] * 0xFFFE, drawn, both, {}]
     *_, last, first, second = (output["readback"] for output in leaf.run_verilog(stimulus))
-    assert [last, first, second] == [0xFFFF_FFFF, 0xFFFF_0000, 0xFFFF_0001]
+    assert [last, first, second] == [0xFFFF_FFFF, 0xFFFF_0000, 0x0000_0001]
 
 
 @pytest.mark.parametrize("tracer_address_bits", [5, 6])

@@ -145,13 +145,17 @@ def test_a_hundred_rectangles(reflections, leaf_of, random):
 
 
 def spread(random: np.random.Generator, table: Rectangles) -> Rectangles:
-    """Return a table of `MOST_RECTANGLES` that has these rectangles in any places, among disabled ones."""
-    places = random.permutation(MOST_RECTANGLES) % len(table)
-    enabled = np.zeros(MOST_RECTANGLES, dtype=bool)
-    enabled[np.unique(places, return_index=True)[1]] = True
+    """Return a table of `MOST_RECTANGLES` with these rectangles in any places, also the first and the last, among
+    disabled ones."""
     parts = (table.corners, table.colours, table.enabled, table.mirrors, table.kinds, table.cells, table.colours_2)
-    corners, colours, seen, *looks = (part[places] for part in parts)
-    return Rectangles(corners, colours, enabled & seen, *looks)
+    while True:
+        places = random.permutation(MOST_RECTANGLES) % len(table)
+        enabled = np.zeros(MOST_RECTANGLES, dtype=bool)
+        enabled[np.unique(places, return_index=True)[1]] = True
+        corners, colours, seen, *looks = (part[places] for part in parts)
+        found = Rectangles(corners, colours, enabled & seen, *looks)
+        if found.visible[[0, -1]].all():
+            return found
 
 
 WIDEST = span_config(rows=180, scale=6, rectangles=12, reflections=4, **dict.fromkeys(FEATURES, True))
