@@ -11,11 +11,12 @@ count, and they are right for any widths, as in `total.next = a + b + c`.
 from __future__ import annotations
 
 import ast
-import functools
 import operator
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from itertools import chain
 from typing import Any, NamedTuple, NoReturn
 
 from myhdl import concat, intbv
@@ -45,15 +46,11 @@ COMPUTED: Mapping[type, Callable[..., Any]] = {
     ast.BitAnd: operator.and_, ast.BitXor: operator.xor, ast.Mod: operator.mod, ast.FloorDiv: operator.floordiv,
     ast.LShift: lambda value, places: value << min(max(places, 0), 1 << 10),
     ast.RShift: lambda value, places: value >> max(places, 0), ast.Pow: lambda base, power: base ** min(power, 1 << 10),
-    ast.USub: operator.neg, ast.UAdd: operator.pos, ast.Invert: operator.invert,
-}  # fmt: skip
-"""Operators of numbers."""
-
-COMPARED: Mapping[type, Callable[..., Any]] = {
+    ast.USub: operator.neg, ast.UAdd: operator.pos, ast.Invert: operator.invert, ast.Not: operator.not_,
     ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Gt: operator.gt, ast.GtE: operator.ge, ast.Lt: operator.lt,
     ast.LtE: operator.le,
 }  # fmt: skip
-"""Comparisons of numbers."""
+"""Operators of numbers."""
 
 OPPOSITES = {
     ast.Eq: ast.NotEq, ast.NotEq: ast.Eq, ast.Gt: ast.LtE, ast.LtE: ast.Gt, ast.Lt: ast.GtE, ast.GtE: ast.Lt,
@@ -123,7 +120,7 @@ class Expressions:
         inner: Any = target
         while isinstance(inner, (ast.Subscript, ast.Attribute)):
             at = inner.value
-            copy = isinstance(at, ast.Subscript) and (isinstance(at.slice, ast.Slice) or not self.is_word(at))
+            copy = isinstance(at, ast.Subscript) and not self.is_word(at)
             if copy and (isinstance(inner, ast.Attribute) or isinstance(inner.slice, ast.Slice)):
                 name = ast.unparse(at).partition("[")[0].removesuffix(".next")
                 if isinstance(at, ast.Subscript) and isinstance(self._object(at.value), (list, tuple, dict)):
@@ -171,7 +168,7 @@ class Expressions:
         if _is_integer(known) and bits > INTEGER_BITS:
             self.refuse(value, f"{name} is an integer of {INTEGER_BITS} bits in Verilog, and has {bits} here; use an "
                         "intbv(0, min=..., max=...)")  # fmt: skip
-        if isinstance(known, bool) and _either(around, Range(0, 1)) != Range(0, 1):
+        if isinstance(known, bool) and _around(around, Range(0, 1)) != Range(0, 1):
             self.refuse(value, f"{name} is one bit in Verilog, and may be {around.low} to {around.high} here; write "
                         "not for a bit")  # fmt: skip
 
@@ -206,9 +203,9 @@ class Expressions:
         index = self.constant(at.slice)
         return None if index is None else (index, index + 1)
 
-    def is_word(self, node: ast.Subscript) -> bool:
+    def is_word(self, node: ast.expr) -> bool:
         """Return True for a word of a memory."""
-        return bool(is_memory(self._object(node.value)))
+        return isinstance(node, ast.Subscript) and bool(is_memory(self._object(node.value)))
 
     def constant(self, node: ast.expr | None) -> Any:
         """Return a number, or True or False; None for an expression that is not constant."""
@@ -221,22 +218,14 @@ class Expressions:
                 known = self._object(node)
                 variable = isinstance(node, ast.Name) and (node.id in self._tree.vardict or node.id in self._ranges)
                 return known if isinstance(known, int) and not variable else None
-            case ast.BinOp() if type(node.op) in COMPUTED:
-                sides = self.constant(node.left), self.constant(node.right)
-                if None in sides or (isinstance(node.op, (ast.Mod, ast.FloorDiv)) and not sides[1]):
-                    return None
-                return COMPUTED[type(node.op)](*map(int, sides))
-            case ast.UnaryOp() if type(node.op) in COMPUTED:
-                value = self.constant(node.operand)
-                return None if value is None else COMPUTED[type(node.op)](int(value))
-            case ast.Compare(left=left, ops=[op], comparators=[right]) if self._assumed and type(op) in COMPARED:
-                sides = self.constant(left), self.constant(right)
-                return None if None in sides else COMPARED[type(op)](*sides)
-            case ast.BoolOp() if self._assumed:
-                return joined(node.op, map(self.constant, node.values))
-            case ast.UnaryOp(op=ast.Not()) if self._assumed:
-                value = self.constant(node.operand)
-                return None if value is None else not value
+            case ast.BoolOp() | ast.Compare() | ast.UnaryOp(op=ast.Not()) if not self._assumed:
+                return None  # conditions are printed as they are written
+            case ast.BoolOp(op=op, values=values):
+                return joined(op, map(self.constant, values))
+            case ast.BinOp(left=one, op=op, right=other) | ast.Compare(left=one, ops=[op], comparators=[other]):
+                return self._computed(op, one, other)
+            case ast.UnaryOp(op=op, operand=operand):
+                return self._computed(op, operand)
             case ast.Call(args=[argument]) if _called(node) is len:
                 return len(self._object(argument))
             case ast.Call(args=[ast.Constant(value=str(value))]) if _called(node) is ord:
@@ -248,6 +237,12 @@ class Expressions:
                 return None if index is None or not -len(table) <= index < len(table) else table[index]
         return None
 
+    def _computed(self, op: Any, *operands: ast.expr) -> Any:
+        values = [*map(self.constant, operands)]
+        if type(op) not in COMPUTED or None in values or (isinstance(op, (ast.Mod, ast.FloorDiv)) and not values[1]):
+            return None
+        return COMPUTED[type(op)](*map(int, values))
+
     def range(self, node: ast.expr) -> Range:
         """Return the values that an expression may have."""
         if (constant := self.constant(node)) is not None:
@@ -255,17 +250,10 @@ class Expressions:
         match node:
             case ast.BinOp():
                 return self._range_of_operator(node)
-            case ast.UnaryOp(op=ast.USub()):
-                low, high = self.range(node.operand)
-                return Range(-high, -low)
-            case ast.UnaryOp(op=ast.Invert()):
-                low, high = self.range(node.operand)
-                bits = self._own_bits(node.operand)
-                return Range(0, (1 << bits) - 1) if bits else Range(~high, ~low)
-            case ast.IfExp():
-                return _either(self.range(node.body), self.range(node.orelse))
-            case ast.Call(args=[value, *_]) if _called(node) in (int, intbv) or _is_modbv(_called(node)):
-                return self.range(value)
+            case ast.UnaryOp(op=ast.Invert(), operand=operand) if bits := self._own_bits(operand):
+                return Range(0, (1 << bits) - 1)
+            case ast.UnaryOp(op=ast.USub() | ast.UAdd() | ast.Invert() as op):
+                return _around([COMPUTED[type(op)](end) for end in self.range(node.operand)])
             case ast.Call() if _tree(node):
                 return self._returned(node)
             case ast.Name(id=name) if name in self._ranges:
@@ -275,35 +263,32 @@ class Expressions:
                 low, high = self.range(node.value)
                 return Range(low >> places if low < 0 else 0, high >> places)
             case ast.Subscript() if (table := table_of(self._object(node.value))) is not None:
-                return Range(min(table), max(table))
-        known = self._object(node)
-        known = known.val if isinstance(known, SignalType) else known
-        if isinstance(node, (ast.Name, ast.Attribute)) or (
-            isinstance(node, ast.Subscript) and is_memory(self._object(node.value))
+                return _around(table)
+        if parts := self._parts(node):
+            return _around(*map(self.range, parts))
+        known = self._value(node)
+        if (
+            isinstance(known, intbv)
+            and len(known)
+            and (isinstance(node, (ast.Name, ast.Attribute)) or self.is_word(node))
         ):
-            if isinstance(known, intbv) and len(known):
-                return Range(known.min or 0, (known.max or 1 << len(known)) - 1)
-            if isinstance(known, int) and not isinstance(known, bool):
-                return Range(-LARGEST_VARIABLE, LARGEST_VARIABLE)
+            return Range(known.min or 0, (known.max or 1 << len(known)) - 1)
         return _all_of(*self._type(node))
 
     def _range_of_operator(self, node: ast.BinOp) -> Range:
         one, other = self.range(node.left), self.range(node.right)
-        compute = COMPUTED.get(type(node.op))
         if isinstance(node.op, ast.Mod):
             return Range(min(other.low + 1, 0), max(other.high - 1, 0))
         if isinstance(node.op, ast.BitAnd) and max(one.low, other.low) >= 0:
             return Range(0, min(part.high for part in (one, other) if part.low >= 0))
-        if isinstance(node.op, ast.BitAnd) and (one.low >= 0 or other.low >= 0):
-            return Range(0, one.high if one.low >= 0 else other.high)
         if isinstance(node.op, (ast.BitAnd, ast.BitOr, ast.BitXor)):
-            around = _either(one, other)
+            around = _around(one, other)
             bits = around.bits(False)
             return Range(-(1 << bits) if around.low < 0 else 0, (1 << bits) - 1)
         if isinstance(node.op, ast.FloorDiv) and other.low <= 0:
-            return Range(min(one.low, -one.high), max(one.high, -one.low))
-        values = [compute(a, b) for a in one for b in other] if compute else [*one, *other]
-        return Range(min(values), max(values))
+            return _around(one, [-one.high, -one.low])
+        compute = COMPUTED.get(type(node.op))
+        return _around([compute(a, b) for a in one for b in other]) if compute else _around(one, other)
 
     def _find_ranges(self) -> None:
         """Find the ranges of loops' variables, and those of integer variables from what is assigned to them.
@@ -319,7 +304,7 @@ class Expressions:
         for sweep in range(1, MOST_SWEEPS):
             before, grew = {name: self._ranges[name] for name in values}, growth
             for name, known in values.items():
-                self._ranges[name] = functools.reduce(_either, map(self.range, known), before[name])
+                self._ranges[name] = _around(before[name], *map(self.range, known))
             now = {name: self._ranges[name] for name in values}
             if (
                 now == before
@@ -350,8 +335,8 @@ class Expressions:
             numbers, name = self.numbers(node), ast.unparse(node.target)
             if name in loops:
                 self.refuse(node, f"{name} is the variable of the loop around it; take another name")
-            found = Range(min(numbers, default=0), max(numbers, default=0))
-            self._ranges[name] = _either(found, self._ranges.get(name, found))
+            found = _around(numbers or [0])
+            self._ranges[name] = _around(found, self._ranges.get(name, found))
             times, loops = times * len(numbers), (*loops, name)
         elif isinstance(node, (ast.Assign, ast.AugAssign)):
             target = node.targets[0] if isinstance(node, ast.Assign) else node.target
@@ -372,15 +357,14 @@ class Expressions:
         return runs + sum(self._find_assignments(part, times, loops, values) for part in parts)
 
     def _check_condition(self, node: ast.expr) -> None:
-        known = self._object(node)
-        if isinstance(getattr(known, "val", known), EnumItemType):
+        if isinstance(self._value(node), EnumItemType):
             self.refuse(node, f"{ast.unparse(node)} is a state, which Python always takes as true; compare it with ==")
 
     @contextmanager
     def within(self, node: Any) -> Iterator[None]:
         """Make a context in which a loop's variable has its values there; elsewhere, it has those of all loops."""
         numbers = self.numbers(node)
-        with self._narrowed({node.target.id: Range(min(numbers), max(numbers))} if numbers else {}, node):
+        with self._narrowed({node.target.id: _around(numbers)} if numbers else {}, node):
             yield
 
     @contextmanager
@@ -415,8 +399,7 @@ class Expressions:
                 kind = type(op) if truth else OPPOSITES.get(type(op))
                 for one, relation, other in ((left, kind, right), (right, MIRRORED.get(kind, kind), left)):
                     name = one.id if isinstance(one, ast.Name) else ""
-                    known = self._object(one) if name else None
-                    if not isinstance(getattr(known, "val", known), (int, intbv)) or self.constant(one) is not None:
+                    if not name or not isinstance(self._value(one), (int, intbv)) or self.constant(one) is not None:
                         continue
                     (low, high), (first, last) = self.range(one), self.range(other)
                     if relation in (ast.Gt, ast.GtE, ast.Eq):
@@ -430,9 +413,7 @@ class Expressions:
 
     def is_full(self, subject: ast.expr, patterns: Sequence[ast.expr]) -> bool:
         """Return True if these values are all that an expression may have."""
-        known = self._object(subject)
-        known = getattr(known, "val", known)
-        if isinstance(known, EnumItemType):
+        if isinstance(known := self._value(subject), EnumItemType):
             return len({internals.text_of(_known(one)) for one in patterns}) == len(internals.states_of(known))
         low, high = self.range(subject)
         return len({self.constant(one) for one in patterns} - {None}) > high - low
@@ -447,7 +428,7 @@ class Expressions:
         start, stop = given[:2] if len(given) > 1 else (ast.copy_location(ast.Constant(0), node), given[0])
         if _called(node.iter) is range:
             return start, stop, step
-        first, end = given[:2] if len(given) > 1 else (given[0], start)
+        first, end = (start, stop) if len(given) > 1 else (stop, start)
         one = ast.Constant(1)
         first, end = (ast.copy_location(ast.BinOp(bound, ast.Sub(), one), node) for bound in (first, end))
         return first, end, -step
@@ -476,7 +457,7 @@ class Expressions:
         inner, results = self._results(node)
         if not results or not isinstance(known, int):
             return _all_of(*_shape(known))
-        return functools.reduce(_either, map(inner.range, results))
+        return _around(*map(inner.range, results))
 
     def _results(self, node: ast.Call) -> tuple[Expressions, list[ast.expr]]:
         """Return the expressions of a function, with the ranges of this call's arguments, and those that it returns."""
@@ -494,6 +475,11 @@ class Expressions:
             return self._tree.vardict[node.id]
         return _known(node)
 
+    def _value(self, node: Any) -> Any:
+        """Return a value of an expression's type."""
+        known = self._object(node)
+        return known.val if isinstance(known, SignalType) else known
+
     def _type(self, node: ast.expr) -> tuple[int, bool]:
         """Return the bits of an operand, and True if Verilog takes it as two's complement."""
         match node:
@@ -502,7 +488,7 @@ class Expressions:
                 whole = lower is None and (upper is None or signed)
                 return (bits, signed) if whole else (self._width(node, bits), False)
             case ast.Subscript() if (table := table_of(self._object(node.value))) is not None:
-                around = Range(min(table), max(table))
+                around = _around(table)
                 return max(around.bits(around.low < 0), 1), around.low < 0
             case ast.Call() if _called(node) == intbv.signed and isinstance(node.func, ast.Attribute):
                 return self._type(node.func.value)[0], True
@@ -523,39 +509,33 @@ class Expressions:
 
     def _is_bool(self, node: ast.expr) -> bool:
         """Return True for an expression that is True or False in Python."""
-        known = self._object(node)
-        return isinstance(known.val if isinstance(known, SignalType) else known, bool)
+        return isinstance(self._value(node), bool)
 
     def _own_bits(self, node: ast.expr) -> int:
         """Return the bits that MyHDL's ~ inverts, 0 if it makes a negative number."""
-        known = self._object(node)
-        known = known.val if isinstance(known, SignalType) else known
-        bits, signed = self._type(node)
         leaf = isinstance(node, (ast.Name, ast.Attribute, ast.Subscript, ast.Call))
-        return 0 if signed or not leaf or not isinstance(known, intbv) else bits
+        bits, signed = self._type(node)
+        return bits if leaf and not signed and isinstance(self._value(node), intbv) else 0
 
-    def _leaves(self, node: ast.expr) -> Iterator[ast.expr]:
-        """Yield the operands that share a context."""
-        if self.constant(node) is not None:
-            yield node
-            return
-        parts: list[ast.expr]
+    def _parts(self, node: ast.expr) -> list[ast.expr]:
+        """Return the operands that share the context of an expression; none if it is an operand itself."""
         match node:
             case ast.BinOp(op=ast.LShift() | ast.RShift()):
-                parts = [node.left]
+                return [node.left]
             case ast.BinOp():
-                parts = [node.left, node.right]
+                return [node.left, node.right]
             case ast.UnaryOp(op=ast.USub() | ast.UAdd() | ast.Invert()):
-                parts = [node.operand]
+                return [node.operand]
             case ast.IfExp():
-                parts = [node.body, node.orelse]
+                return [node.body, node.orelse]
             case ast.Call(args=[value, *_]) if _called(node) in (int, intbv) or _is_modbv(_called(node)):
-                parts = [value]
-            case _:
-                yield node
-                return
-        for part in parts:
-            yield from self._leaves(part)
+                return [value]
+        return []
+
+    def _leaves(self, node: ast.expr) -> list[ast.expr]:
+        """Return all operands that share a context."""
+        parts = self._parts(node) if self.constant(node) is None else []
+        return [leaf for part in parts for leaf in self._leaves(part)] if parts else [node]
 
     def _context(self, nodes: list[ast.expr], bits: int | None) -> Context:
         """Return the context of an expression, or of the two sides of a comparison."""
@@ -580,20 +560,9 @@ class Expressions:
             return True
         if self.constant(node) is not None:
             return False
-        match node:
-            case ast.BinOp(op=ast.RShift()):
-                return self._is_negative(node.left, None)
-            case ast.BinOp(op=ast.LShift()):
-                return self._is_negative(node.left, needed)
-            case ast.BinOp():
-                power = self._power(node.right) if isinstance(node.op, ast.Mod) else None
-                needed = needed if isinstance(node.op, CARRYING) else power
-                return self._is_negative(node.left, needed) or self._is_negative(node.right, needed)
-            case ast.UnaryOp(op=ast.USub() | ast.UAdd() | ast.Invert()):
-                return self._is_negative(node.operand, needed)
-            case ast.IfExp():
-                return self._is_negative(node.body, needed) or self._is_negative(node.orelse, needed)
-        return False
+        if isinstance(node, ast.BinOp) and not isinstance(node.op, CARRYING):
+            needed = self._power(node.right) if isinstance(node.op, ast.Mod) else None
+        return any(self._is_negative(part, needed) for part in self._parts(node))
 
     def _power(self, node: ast.expr) -> int | None:
         """Return the exponent of a constant power of two."""
@@ -752,7 +721,7 @@ class Expressions:
                 bits, signed = _shape(tree.symdict[formal])
                 around, held = self.range(argument), _all_of(bits, signed)
                 texts.append(self.text(argument))
-                if _either(around, held) != held:
+                if _around(around, held) != held:
                     self.refuse(node, f"{formal} holds {held.low} to {held.high} in Verilog, and may be {around.low} "
                                 f"to {around.high} here; assign the argument to a signal first")  # fmt: skip
             return f"{name}({', '.join(texts)})"
@@ -764,20 +733,34 @@ class Expressions:
         """Return the bits of a slice, whose bounds may depend on loops' variables."""
         assert isinstance(node.slice, ast.Slice)
         lower, upper = node.slice.lower, node.slice.upper
-        parts = [part for bound in (lower, upper) if bound for part in ast.walk(bound)]
-        names = {part.id for part in parts if isinstance(part, ast.Name) and self.constant(part) is None}
-        found = set()
-        for start in (101, 211, 997):
-            with self.assuming({name: start + 37 * place for place, name in enumerate(sorted(names))}):
-                high, low = self.constant(lower) if lower else whole, self.constant(upper) if upper else 0
-            found.add(None if None in (high, low) else high - low)
-        if len(found) != 1 or None in found:
+        found = Counter({"": 0 if lower else whole})
+        for bound, times in ((lower, 1), (upper, -1)):
+            if bound:
+                self._add_terms(bound, times, found)
+        bits = found.pop("")
+        if any(found.values()):
             self.refuse(node, "the number of these bits must be constant; shift the signal, and take its lowest bits")
         if upper and self.range(upper).low < 0:
             self.refuse(node, "the lowest bit may be below 0; correct the bounds")
-        if (bits := found.pop()) < 1:
+        if bits < 1:
             self.refuse(node, "these bounds enclose no bits; the first is above the highest bit, the second the lowest")
         return bits
+
+    def _add_terms(self, node: ast.expr, times: int, found: Counter[str]) -> None:
+        """Add the terms of a sum, each with how often it is added; a number belongs to the empty text."""
+        constant = self.constant(node)
+        match node:
+            case _ if constant is not None:
+                found[""] += times * int(constant)
+            case ast.BinOp(op=ast.Add() | ast.Sub() as op):
+                self._add_terms(node.left, times, found)
+                self._add_terms(node.right, times if isinstance(op, ast.Add) else -times, found)
+            case ast.BinOp(op=ast.Mult()) if (factor := self.constant(node.right)) is not None:
+                self._add_terms(node.left, times * factor, found)
+            case ast.BinOp(op=ast.Mult()) if (factor := self.constant(node.left)) is not None:
+                self._add_terms(node.right, times * factor, found)
+            case _:
+                found[ast.unparse(node)] += times
 
     def _place(self, node: ast.expr) -> str:
         """Return the text of a name, or of bits of a signal or words of a memory."""
@@ -813,7 +796,7 @@ class Expressions:
                 if isinstance(known, SignalType) and isinstance(known.val, bool):
                     self.refuse(node, f"{ast.unparse(value)} is a bit; write it without an index")
                 constant = self.constant(index)
-                text = self._bit(value, index)
+                text = self._selected(value, index)
                 # Beyond the highest bit MyHDL reads zeros, or the sign, and refuses to write.
                 if around.high < bits or (constant is None and isinstance(node.ctx, ast.Store)):
                     return text
@@ -825,13 +808,15 @@ class Expressions:
                 return f"({self._root(index, None)} < {bits} && {text})"
         return self._operand(node)
 
-    def _bit(self, value: ast.expr, index: ast.expr) -> str:
-        constant, (text, offset) = self.constant(index), self._base(value)
-        return f"{text}[{self._moved(index, offset) if constant is None else constant + offset}]"
-
-    def _moved(self, index: ast.expr, offset: int) -> str:
-        """Return an index, moved by the lowest bit of a slice."""
-        return f"{self._root(index, None)} + {offset}" if offset else self.text(index)
+    def _selected(self, value: ast.expr, low: ast.expr | None, width: int = 0) -> str:
+        """Return bits of a value, from the lowest on; a single bit if there is no width."""
+        text, offset = self._base(value)
+        first = self.constant(low) if low else 0
+        if low and first is None:
+            place = f"{self._root(low, None)} + {offset}" if offset else self.text(low)
+            return f"{text}[{place}{f' +: {width}' * bool(width)}]"
+        first += offset
+        return f"{text}[{first + width - 1}:{first}]" if width else f"{text}[{first}]"
 
     def _bits(self, node: ast.Subscript, lower: ast.expr | None, upper: ast.expr | None) -> str:
         if isinstance(node.value, ast.Call) and (_called(node.value) is intbv or _is_modbv(_called(node.value))):
@@ -843,19 +828,14 @@ class Expressions:
         if lower is None and signed:
             assert upper is not None
             return f"({self._place(node.value)} >>> {self.text(upper)})"
-        text, offset = self._base(node.value)
         low: Any = self.constant(upper) if upper else 0
         width = self._width(node, bits)
-        if low is None:
-            assert upper is not None
-            if (last := self.range(upper).high + width - 1) >= bits:
-                self.refuse(node, f"bit {last} may be among these, and the highest bit is {bits - 1}; correct the "
-                            "bounds, or shift the signal and take its lowest bits")  # fmt: skip
-            return f"{text}[{self._moved(upper, offset)} +: {width}]"
-        high = low + offset + width - 1
-        if low + width > bits:
+        if upper and low is None and (last := self.range(upper).high + width - 1) >= bits:
+            self.refuse(node, f"bit {last} may be among these, and the highest bit is {bits - 1}; correct the "
+                        "bounds, or shift the signal and take its lowest bits")  # fmt: skip
+        if low is not None and low + width > bits:
             self.refuse(node, f"bits {low + width - 1} to {low} are not all within 0 to {bits - 1}; correct the bounds")
-        return f"{text}[{high}:{low + offset}]"
+        return self._selected(node.value, upper, width)
 
     def _base(self, node: ast.expr) -> tuple[str, int]:
         """Return the text of what bits are taken from, and the place of its lowest bit there."""
@@ -942,9 +922,10 @@ def _is_integer(known: Any) -> bool:
     return isinstance(known, int) and not isinstance(known, bool)
 
 
-def _either(one: Range, other: Range) -> Range:
-    """Return a range that contains two others."""
-    return Range(min(one.low, other.low), max(one.high, other.high))
+def _around(*ranges: Iterable[int]) -> Range:
+    """Return the range of all numbers in some ranges, tables or lists."""
+    numbers = [*chain(*ranges)]
+    return Range(min(numbers), max(numbers))
 
 
 def _shape(known: Any) -> tuple[int, bool]:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+import inspect
 from collections.abc import Iterable
 from itertools import pairwise
 from types import FunctionType
@@ -39,7 +40,7 @@ def prepare(tree: Any) -> None:
 
 def joined(op: ast.boolop, values: Iterable[bool | None]) -> bool | None:
     """Return the truth of `and` or `or`, None if it is unknown, as that of an operand may be."""
-    known, ends = [*values], isinstance(op, ast.Or)
+    known, ends = [one if one is None else bool(one) for one in values], isinstance(op, ast.Or)
     return ends if ends in known else None if None in known else not ends
 
 
@@ -85,6 +86,16 @@ class _Decided(ast.NodeTransformer):
 
     def visit_Call(self, node: Any) -> ast.expr:
         self.generic_visit(node)
+        function: Any = self._around.get(getattr(node.func, "id", ""))
+        names = function.__code__.co_varnames[: function.__code__.co_argcount] if inspect.isfunction(function) else ()
+        if len(node.args) < len(names):
+            given = zip(reversed(names), reversed(function.__defaults__ or ()), strict=False)
+            known = {name: ast.copy_location(ast.Constant(one), node) for name, one in given if isinstance(one, int)}
+            known |= dict(zip(names, node.args, strict=False)) | {one.arg: one.value for one in node.keywords}
+            node.args, node.keywords = [known[name] for name in names if name in known], []
+        return self._folded(node)
+
+    def _folded(self, node: ast.expr) -> ast.expr:
         [value] = self._value(node) or [None]
         return ast.copy_location(ast.Constant(value), node) if isinstance(value, int) else node
 
@@ -92,7 +103,7 @@ class _Decided(ast.NodeTransformer):
         [place], words = self._value(node.slice) or [None], self._around.get(getattr(node.value, "id", ""))
         if isinstance(words, list) and isinstance(place, int) and place < 0:
             node.slice = ast.copy_location(ast.Constant(place + len(words)), node)
-        return self.visit_Call(node) if isinstance(node.ctx, ast.Load) else self.generic_visit(node)
+        return self._folded(node) if isinstance(node.ctx, ast.Load) else self.generic_visit(node)
 
     def visit_Compare(self, node: ast.Compare) -> ast.expr:
         self.generic_visit(node)

@@ -147,7 +147,7 @@ class Statements:
                         every[0][0].update({name: mask | every[0][0].get(name, 0) for name, mask in one.items()})
                         if skips and any(isinstance(part, ast.Break) for part in ast.walk(node)):
                             break
-                case ast.If() if not node.ignore:
+                case ast.If() if not getattr(node, "ignore", False):
                     every = [self._always(branch) for branch in self._reached(node)]
                 case ast.Match():
                     every = [self._always(case.body) for case in node.cases]
@@ -194,10 +194,6 @@ class Statements:
                 return self._assignment(node, target, value)
             case ast.AugAssign(target=target):
                 return [self._assigned(target, ast.copy_location(ast.BinOp(target, node.op, node.value), node), "=")]
-            case ast.If() if node.ignore:  # if __debug__
-                return [""]
-            case ast.If() if node.isCase:
-                return self._inferred_case(node)
             case ast.If():
                 return self._if(node)
             case ast.Match():
@@ -212,7 +208,7 @@ class Statements:
                 return _comment(value) if isinstance(value, str) else [""]
             case ast.Expr(value=ast.Call() as call) if getattr(call.func, "obj", None) is print:
                 return self._print(call)
-            case ast.Expr(value=ast.Call() as call) if hasattr(call, "tree") and not call.tree.hasReturn:
+            case ast.Expr(value=ast.Call() as call) if not getattr(getattr(call, "tree", None), "hasReturn", True):
                 return [f"{text(call)};"]
             case ast.Assert(test=test):
                 return _block(f"if (!({text(test)}))", ['$display("*** AssertionError ***");'])
@@ -236,7 +232,7 @@ class Statements:
         """Yield an assignment; one of a word of a table becomes a case."""
         is_next = _is_next(target)
         arrow = "<=" if is_next and not internals.is_combinational(self._tree) else "="
-        index = value.slice if isinstance(value, ast.Subscript) else None
+        index: Any = value.slice if isinstance(value, ast.Subscript) else None
         table = table_of(getattr(value.value, "obj", None)) if isinstance(index, ast.expr) else None
         if not table or self._expressions.constant(value) is not None:
             driven = is_next and internals.assigned(self._tree)
@@ -296,6 +292,12 @@ class Statements:
         return [(kind, name + "_" * (name in self._names)) for kind, name in names.items()]
 
     def _if(self, node: Any) -> Iterator[str]:
+        if node.ignore:  # if __debug__
+            yield ""
+            return
+        if node.isCase:
+            yield from self._inferred_case(node)
+            return
         with ExitStack() as before:
             for place, (test, body) in enumerate(node.tests):
                 head = f"{'else ' * bool(place)}if ({self._expressions.text(test)})"
@@ -308,8 +310,10 @@ class Statements:
     def _inferred_case(self, node: Any) -> Iterator[str]:
         """Yield the cases of an `if` that compares one signal with different values."""
         where = self._expressions.where
-        cases = [(self._expressions.case(node.caseVar, test.case[1]), body, where(test, False, node))
-                 for test, body in node.tests]  # fmt: skip
+        cases: list[tuple[str, Any, Any]] = [
+            (self._expressions.case(node.caseVar, test.case[1]), body, where(test, False, node))
+            for test, body in node.tests
+        ]
         if node.else_:
             cases.append(("default", node.else_, nullcontext()))
         elif node.isFullCase and internals.is_combinational(self._tree):

@@ -146,8 +146,8 @@ def functions_with_results(clk, a, q, y, z, up, kept):
             return second
         return third
 
-    def double(x):
-        return x * 2 - 3
+    def double(x, less=3, factor=2):
+        return x * factor - less
 
     def bump(v):
         v[:] = (v + 3) % 32
@@ -156,7 +156,7 @@ def functions_with_results(clk, a, q, y, z, up, kept):
     def combine():
         y.next = total(a, total(q, a))
         z.next = largest(a, q, a) + total(q, q)
-        up.next = double(a) * 3 if a > 3 else double(q) >> 1
+        up.next = double(a) * 3 if a > 3 else double(factor=2, x=q) >> 1
 
     @always(clk.posedge)
     def keep():
@@ -311,7 +311,7 @@ def bits_and_variables(clk, a, index, k, y, bits, picked, kept, mode):
             y.next[2 * i + 2 : 2 * i] = a[2 * i + 2 : 2 * i] ^ (i % 4)
         bits.next[0] = a[index]
         bits.next[1] = upper[7] ^ upper[index[3:]] ^ upper[(index ^ k) & 7]
-        bits.next[4:2] = upper[6:2][3:1]
+        bits.next[4:2] = a[(index ^ k[0]) // 2 + 4 : (index ^ k[0]) // 2 + 2]
 
     @always_comb
     def pick():
