@@ -6,7 +6,7 @@ from __future__ import annotations
 import functools
 import inspect
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
@@ -260,16 +260,9 @@ class Contents:
         self._touched[id(signal)] = signal
 
     def _read(self, signal: SignalType) -> None:
-        waiting = [signal]
-        for one in waiting:
+        for one in sources(signal, self._port_ids):
             self.read.add(id(one))
             self._touched[id(one)] = one
-            if id(one) in self._port_ids:
-                continue
-            if isinstance(one, SliceSignal):
-                waiting.append(bits_of(one)[0])
-            elif isinstance(one, ConcatSignal):
-                waiting += [part for part in internals.operands_of(one) if isinstance(part, SignalType)]
 
     def _find_ports(self) -> None:
         """Find the ports: signals among the arguments, and those of interfaces that the module uses."""
@@ -278,13 +271,9 @@ class Contents:
         self.names: dict[int, str] = {}
         for name, signal in sorted(self.arriving.items(), key=lambda item: item[0] not in arguments):
             needed = name in arguments and not isinstance(signal, (Tied, Unconnected))
-            if id(signal) in self._touched:
+            if needed or id(signal) in self._touched:
                 self.ports += (Port.of(name, signal, id(signal) in self.driven),)
                 self._take(name, -len(self.ports))  # one signal may be at two ports
-                self.names[id(signal)] = name
-            elif needed:
-                self.ports += (Port.of(name, signal, False),)
-                self._take(name, -len(self.ports))
                 self.names[id(signal)] = name
 
     def _name_signals(self) -> None:
@@ -305,13 +294,9 @@ class Contents:
             self._take(name, id(memory))
             internals.set_name(memory, name)
             for index, element in enumerate(memory):
-                if (
-                    name not in self.passed
-                    and self.names.setdefault(id(element), f"{name}[{index}]") != f"{name}[{index}]"
-                ):
-                    self._refuse(
-                        f"a process indexes {name}, but {name}[{index}] is also {self.names[id(element)]}", name
-                    )
+                own = f"{name}[{index}]"
+                if name not in self.passed and (other := self.names.setdefault(id(element), own)) != own:
+                    self._refuse(f"a process indexes {name}, but {own} is also {other}", name)
         touched = sorted(self._touched.values(), key=lambda signal: first[id(signal)])
         unnamed = [signal for signal in touched if id(signal) not in self.names]
         inline = (ConcatSignal, Tied, Constant)  # printed where they are used, if no variable holds them
@@ -331,7 +316,8 @@ class Contents:
             record = self.names.get(id(word)) or known[id(word)]
             self.names[id(field)] = f"{record.removesuffix('_word')}_{field.field}"
             self._take(self.names[id(field)], id(field))
-        for signal in [*touched, *(one for memory in self.memories.values() for one in memory)]:
+        words = [one for memory in self.memories.values() for one in memory]
+        for signal in [*touched, *words]:
             internals.set_name(signal, self.text(signal))
         for name in self.passed:
             for index, one in enumerate(self.memories[name]):
@@ -346,11 +332,7 @@ class Contents:
                 for name, value in internals.state_of(part).items():
                     self._take(name, id(part))
                     self.variables[name] = part.vardict[name], value
-        signals = [
-            *self.signals,
-            *self.arriving.values(),
-            *(one for memory in self.memories.values() for one in memory),
-        ]
+        signals = [*self.signals, *self.arriving.values(), *words]
         variables = [one for part in self.parts for one in getattr(part, "vardict", {}).values()]
         values = [*(signal.val for signal in signals), *variables]
         self.enumerations = [value for value in values if isinstance(value, EnumItemType)]
@@ -408,6 +390,18 @@ def _place(field: Field, first: Mapping[int, int]) -> tuple[bool, int, int]:
     word = bits_of(field)[0]
     place = next(number for number, other in enumerate(internals.slices_of(word)) if other is field)
     return isinstance(word, SliceSignal), first[id(word)], place
+
+
+def sources(value: Any, ports: Collection[int]) -> Iterator[SignalType]:
+    """Yield a signal or a list's signals, and what they are cut or joined from; ports come from outside."""
+    if isinstance(value, (list, tuple)):
+        for one in value:
+            yield from sources(one, ports)
+    elif isinstance(value, SignalType):
+        yield value
+        if isinstance(value, (SliceSignal, ConcatSignal)) and id(value) not in ports:
+            parts = internals.operands_of(value) if isinstance(value, ConcatSignal) else bits_of(value)[0]
+            yield from sources(parts, ports)
 
 
 def is_signed(signal: SignalType) -> bool:

@@ -9,18 +9,27 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from myhdl import ConcatSignal
-
-from raycaster.hdl.contents import Connection, Contents, Instance, Loading, Module, Port, Usage, check_keyword, refusal
+from raycaster.hdl.contents import (
+    Connection,
+    Contents,
+    Instance,
+    Loading,
+    Module,
+    Port,
+    Usage,
+    check_keyword,
+    refusal,
+    sources,
+)
 from raycaster.hdl.elaboration import elaboration
 from raycaster.hdl.errors import UserError, faults_in_one_line
 from raycaster.hdl.given import GivenVerilog, load_words
-from raycaster.hdl.internals import Block, SignalType, SliceSignal, bits_of, drivers_of, operands_of
+from raycaster.hdl.internals import Block, SignalType, bits_of, drivers_of
 from raycaster.hdl.records import Field, block_arguments, block_ports, signals_in
 from raycaster.hdl.signals import Tied, Unconnected
 from raycaster.hdl.verilog_style import module_text, number
@@ -59,9 +68,8 @@ def convert_hierarchy(
     if not isinstance(top, Block):
         code = getattr(getattr(top, "funcobj", None), "__code__", None)
         place = f"{code.co_filename}:{code.co_firstlineno}: " if code else ""
-        raise UserError(
-            f"{place}expected a block, got {type(top).__name__}; write @block above the function that makes it"
-        )
+        reason = f"expected a block, got {type(top).__name__}; write @block above the function that makes it"
+        raise UserError(f"{place}{reason}")
     directory.mkdir(parents=True, exist_ok=True)
     with elaboration(), faults_in_one_line():
         converter = _Converter(directory, header, prefix, vocabulary or {})
@@ -104,13 +112,17 @@ class _Converter:
         users = [*self._users(top)]
         crossing: set[int] = set()
         for block, _, value in users:
-            for one in _parts(value, self.port_ids(block)):
+            for one in self._inside(block, value):
                 if homes.setdefault(id(one), id(block)) != id(block):
                     crossing.add(id(one))
         crossing &= self.driven
         for block, name, value in users:
-            if name and any(id(one) in crossing for one in _parts(value, self.port_ids(block))):
+            if name and any(id(one) in crossing for one in self._inside(block, value)):
                 raise refusal(block, f"{name} is used by another block too; pass it as an argument", name)
+
+    def _inside(self, block: Block, value: Any) -> Iterator[SignalType]:
+        ports = self.port_ids(block)
+        return (one for one in sources(value, ports) if id(one) not in ports)
 
     def _users(self, block: Block) -> Iterator[tuple[Block, str, Any]]:
         """Yield each block, those in it first, with each signal and list that it uses, and a name in its processes."""
@@ -122,12 +134,12 @@ class _Converter:
                 for name, signal in self.ports(sub).items():
                     yield block, "", signal
                     if given and name not in given.outputs:
-                        self.read |= {*map(id, _parts(signal, ()))}
+                        self.read |= {*map(id, sources(signal, ()))}
             else:
                 for name, value in (sub.sigdict | sub.losdict).items():
                     yield block, name, value
                     if name in sub.inputs:
-                        self.read |= {*map(id, _parts(value, ()))}
+                        self.read |= {*map(id, sources(value, ()))}
                 for edge in getattr(sub, "senslist", ()):
                     yield block, "", getattr(edge, "sig", edge)
                 yield block, "", getattr(sub, "reset", None)
@@ -160,9 +172,8 @@ class _Converter:
         given_name, ports = block.func.__name__, self.ports(block)
         name = prefixed(given_name, self._prefix)
         if strangers := given.outputs - set(ports):
-            raise refusal(
-                block, f"{', '.join(sorted(strangers))} is listed as an output, but no argument; correct its name"
-            )
+            names = ", ".join(sorted(strangers))
+            raise refusal(block, f"{names} is listed as an output, but no argument; correct its name")
         shapes = tuple(Port.of(port, signal, port in given.outputs) for port, signal in ports.items())
         parameters = tuple(
             (parameter, repr(value))
@@ -202,19 +213,6 @@ class _Converter:
             connections = _connections(self.ports(sub), modules[id(sub)], self.ports(block))
             parts.append(Instance(modules[id(sub)], f"{instance}_i", connections))
         return Contents(block, parts, Usage(self.driven, self.read)), instances
-
-
-def _parts(value: Any, ports: Collection[int]) -> Iterator[SignalType]:
-    """Yield a signal or a list's signals, and what they are cut or joined from, except ports."""
-    if isinstance(value, (list, tuple)):
-        for one in value:
-            yield from _parts(one, ports)
-    elif isinstance(value, SignalType) and id(value) not in ports:
-        yield value
-        if isinstance(value, SliceSignal):
-            yield from _parts(bits_of(value)[0], ports)
-        elif isinstance(value, ConcatSignal):
-            yield from _parts(operands_of(value), ports)
 
 
 def _connections(
