@@ -19,6 +19,7 @@ from raycaster.design.decide import OPTIONS as DESIGN_OPTIONS
 from raycaster.design.decide import configure
 from raycaster.design.for_scene import design_for, left_out, packaged_for
 from raycaster.errors import UserError
+from raycaster.golden.frames import shown_hz
 from raycaster.output import Console, emptied, replaced
 from raycaster.scene import packaged_scenes
 from raycaster.sim import scenes as simulate
@@ -126,7 +127,7 @@ def test_a_list_that_is_too_short_is_refused(tmp_path):
 )
 def test_frames_per_second_on_the_monitor(cycles, said):
     """640x480 has 800 x 525 clocks per refresh, 59.5 times per second."""
-    assert simulate.shown_hz(configure(engine="span"), cycles) == said
+    assert shown_hz(cycles, configure(engine="span")) == said
 
 
 def test_an_interrupted_run_leaves_the_pictures(tmp_path, monkeypatch):
