@@ -225,7 +225,7 @@ class Contents:
             writers = self._writers.get(id(memory), [])
             words = [word for part, own in writers for word in {*internals.written_words(part, own)}]
             alone = {place: self.driven[id(one)] for place, one in enumerate(memory) if id(one) in self.driven}
-            kinds = {(self.driven[id(memory)], internals.keeps(part)) for part, _ in writers}
+            kinds = {("wire" if internals.assigned(part) else "reg", internals.keeps(part)) for part, _ in writers}
             kinds |= {(kind, False if kind == "wire" else None) for kind in alone.values()}
             resets = any(getattr(part, "reset", None) is not None for part, _ in writers)
             words += alone

@@ -212,6 +212,12 @@ def process(statements: str) -> str:
             "words has different kinds of drivers; drive all of it",
         ),
         (
+            "words = [unsigned(4) for _ in range(2)]\n@always_comb\ndef first():\n    words[0].next = a\n"
+            "@always_comb\ndef second():\n    words[1].next = 1\n    if a > b:\n        words[1].next = b\n"
+            + process("result.next = words[1]"),
+            "words has different kinds of drivers; drive all of it",
+        ),
+        (
             "words = [unsigned(4) for _ in range(4)]\n@block\ndef inner(clk, index, a):\n    @always(clk.posedge)\n"
             "    def go():\n        words[index].next = a\n    return go\none = inner(clk, index, a)\n"
             + process("result.next = words[index]"),
