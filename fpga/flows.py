@@ -68,7 +68,7 @@ class Flow:
             has both.
         factor_bits: width of a multiplier's factors.
         block: places of a RAM block and their width, in a shape that Yosys takes for large memories.
-        others: RAM blocks of a design besides its lists and queues: the scene's, with all features.
+        others: RAM blocks that the scene of a design with all features needs; lists and queues need more.
         single_port: places and width of a larger RAM with a single port; None if the family has none.
         tells_crossings: True if nextpnr reports paths from one clock to another.
         pll: returns the PLL's parameters for an input frequency and an output frequency in MHz, with `per_clk` output

@@ -204,7 +204,8 @@ def _cost(path: Path = RESULTS / "features.json") -> dict[str, Any] | None:
     routed = {}
     for kept_path in sorted(path.parent.glob("bitstream-*.json")):
         figures = kept_outcome(kept_path).figures
-        if design := _ROUTED.fullmatch(figures["configuration"]):
+        # A module that was routed alone has no board.
+        if "board" in figures and (design := _ROUTED.fullmatch(figures["configuration"])):
             screen = LIST_SCREENS[design["screen"], figures["rows"]].scaled(int(design["scale"]))
             routed[figures["board"]] = {
                 "features": design["features"].split("-")[1:], "columns": screen.columns, "runs": int(design["list"]),

@@ -124,7 +124,7 @@ def test_frame_registers(leaf_of, random):
 
 
 def test_frame_counts_wrap(leaf_of):
-    """Both counters are modulo 65536, each by itself; in Verilog only, as it takes so many cycles."""
+    """Each counter wraps after 65,535; in Verilog only, as MyHDL would take too long."""
     words = register_map(RECTANGLES, lists=True)
     address = words["frames.counts"].address
     made = {"bus": lambda: SceneBus(address_bits(RECTANGLES, lists=True)), "events": FrameEvents}
