@@ -58,7 +58,7 @@ def sweep(
         unsigned(len(winner.distance) + len(winner.index)) for _ in range(4)
     )
     opens_1, meets_1, nearer_1, same_1, outlasts_1 = (bit() for _ in range(5))
-    judging, in_time, sooner, found, here, ordered, changes, crosses = (bit() for _ in range(8))
+    judging, in_time, soon, soon_after, sooner, found, here, ordered, changes, crosses = (bit() for _ in range(10))
     take, settled, advance, rivalled, earlier, nearer_heir, same_heir, follows = (bit() for _ in range(8))
     rival = Entry(config)
     asked_left, asked_right, right = (unsigned(width) for _ in range(3))
@@ -116,8 +116,12 @@ def sweep(
     def see_time():
         judging.next = (state == SweepState.SCAN) and held
         in_time.next = opens_1 and (left_1 <= stop)
-        sooner.next = at < stop
+        soon.next = left_1 < stop
+        soon_after.next = crossing < stop
         follows.next = outlasts_1 and not shortened
+
+    # Both places are compared before the state chooses one, as the comparison is the slowest path.
+    choose_sooner = assign(sooner, lambda: soon_after if state == SweepState.CROSS else soon)
 
     @always_comb
     def compare_heir():
