@@ -239,9 +239,11 @@ class Unit:
 
 
 def any_frame(random: np.random.Generator, columns: int, rows: int, entries: int) -> list[list[Run]]:
-    """Return the rows of a picture, which has often as many runs as a list has entries, or one more."""
+    """Return the rows of a picture, which has often as many runs as a list has entries, one more or far more."""
     if random.random() < 0.3:
         return [any_row(random, columns) for _ in range(rows)]
+    if random.random() < 0.1:
+        return [row_of(random, columns, columns) for _ in range(rows)]  # units still draw when the list is full
     counts = [1] * rows
     longer = range(rows - int(random.random() < 0.3))  # the last row may have a single run
     for _ in range(int(random.choice([entries, entries, entries + 1])) - rows):
