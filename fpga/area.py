@@ -174,7 +174,7 @@ def command_parser() -> CommandParser:
         "--features", action="store_true", help="count the cells of each engine's features, such as TURN"
     )
     parser.add_argument("--route", action="store_true", help="place and route the module alone, on an ECP5-85F")
-    parser.add_argument("--seed", type=int, default=1, help="seed of the placement (default: %(default)s)")
+    parser.add_argument("--seed", type=int, help="seed of the placement, with --route (default: 1)")
     parser.add_argument("--output", type=Path, default=Path("build/area"), help="output directory (%(default)s)")
     add_scene_argument(parser, "scene to build in with --fix")
     add_fix_option(parser)
@@ -199,6 +199,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         raise UserError(f"family: expected one of {', '.join(FAMILIES)}, got {arguments.family}")
     if arguments.route and arguments.family not in (None, "ecp5"):
         raise UserError("route: places a module on an ECP5 only; leave out --family")
+    if arguments.seed is not None and not arguments.route:
+        raise UserError("seed: chooses the placement, so it needs --route")
     console = Console()
     if arguments.features:
         if any((arguments.scene, arguments.fix, arguments.family, arguments.route, given_options(arguments))):
@@ -210,7 +212,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, console)
     announce("area --route" if arguments.route else "area")
     if arguments.route:
-        figures = route(config, arguments.seed, arguments.output / config.name, console)
+        figures = route(config, 1 if arguments.seed is None else arguments.seed, arguments.output / config.name, console)
         keep(arguments, figures, verilog, left_out="pins, and the paths to and from them")
         return
     families = [FAMILIES[arguments.family]] if arguments.family else list(FAMILIES.values())

@@ -173,6 +173,8 @@ def test_a_module_is_routed_alone(tmp_path, monkeypatch, capsys):
     assert re.search(r"1.23 +rect_mem_i.index", shown)
     with pytest.raises(UserError, match="route: places a module on an ECP5"):
         area.main(["--route", "--family", "cyclonev"])
+    with pytest.raises(UserError, match="seed: chooses the placement"):
+        area.main(["--seed", "3"])
 
 
 @pytest.mark.slow
