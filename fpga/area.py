@@ -212,7 +212,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, console)
     announce("area --route" if arguments.route else "area")
     if arguments.route:
-        figures = route(config, 1 if arguments.seed is None else arguments.seed, arguments.output / config.name, console)
+        seed = 1 if arguments.seed is None else arguments.seed
+        figures = route(config, seed, arguments.output / config.name, console)
         keep(arguments, figures, verilog, left_out="pins, and the paths to and from them")
         return
     families = [FAMILIES[arguments.family]] if arguments.family else list(FAMILIES.values())

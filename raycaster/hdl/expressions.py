@@ -513,6 +513,12 @@ class Expressions:
 
     def _own_bits(self, node: ast.expr) -> int:
         """Return the bits that MyHDL's ~ inverts, 0 if it makes a negative number."""
+        if isinstance(node, ast.Call) and _tree(node):
+            inner, results = self._results(node)
+            if sides := [side for one in results if isinstance(one, ast.IfExp) for side in _sides(one)]:
+                if any(map(inner._own_bits, sides)):
+                    self.refuse(node, "~ inverts the bits of the side that is chosen; write it in the function")
+                return 0
         leaf = isinstance(node, (ast.Name, ast.Attribute, ast.Subscript, ast.Call))
         bits, signed = self._type(node)
         return bits if leaf and not signed and isinstance(self._value(node), intbv) else 0
@@ -893,6 +899,11 @@ def _chain(node: Any) -> Iterator[ast.expr]:
     while isinstance(node, (ast.Attribute, ast.Subscript)):
         node = node.value
         yield node
+
+
+def _sides(node: ast.expr) -> list[ast.expr]:
+    """Return the sides of a choice, and of the choices that these are."""
+    return [*_sides(node.body), *_sides(node.orelse)] if isinstance(node, ast.IfExp) else [node]
 
 
 def _changed(statement: ast.stmt) -> Iterator[str]:

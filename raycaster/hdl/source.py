@@ -84,6 +84,13 @@ class _Decided(ast.NodeTransformer):
         decided = self._decide(node.test)
         return self.generic_visit(node) if decided is None else self.visit(node.body if decided else node.orelse)
 
+    def visit_UnaryOp(self, node: ast.UnaryOp) -> Any:
+        """Invert each side of a choice by itself, as the sides may have different numbers of bits."""
+        if not isinstance(node.op, ast.Invert) or not isinstance(choice := node.operand, ast.IfExp):
+            return self.generic_visit(node)
+        sides = (ast.copy_location(ast.UnaryOp(node.op, side), node) for side in (choice.body, choice.orelse))
+        return self.visit(ast.copy_location(ast.IfExp(choice.test, *sides), node))
+
     def visit_Call(self, node: Any) -> ast.expr:
         self.generic_visit(node)
         function: Any = self._around.get(getattr(node.func, "id", ""))

@@ -169,7 +169,7 @@ def functions_with_results(clk, a, q, y, z, up, kept):
     return instances()
 
 
-@program(clk=1, a=4, only=4, around=4, gate=1, y=4, kept=4, late=4, held=4, low=lambda: Signal(intbv(9)[4:]))
+@program(clk=1, a=4, only=4, around=4, gate=1, y=4, kept=4, late=4, held=4, low=lambda: Signal(intbv(8)[4:]))
 def functions_and_latches_read_signals(clk, a, only, around, gate, y, kept, late, held, low):
     part = signed(6)
 

@@ -197,6 +197,10 @@ def process(statements: str) -> str:
             "the result is one bit in Verilog, and may be -2 to -1 here",
         ),
         (
+            "def either(x):\n    return x if x else 1\n" + process("result.next = ~either(index)"),
+            "~ inverts the bits of the side that is chosen; write it in the function",
+        ),
+        (
             "def same(x):\n    return x + 0\n" + process("result.next = same(~(a > b))"),
             "x holds 0 to 1 in Verilog, and may be -2 to -1 here",
         ),
@@ -323,6 +327,7 @@ def test_other_wrong_forms_are_refused(body, reason, tmp_path):
                 "result.next = (a - b) % 8",
                 "result.next = ~index == a",
                 "result.next = ~index",
+                "result.next = ~(index if a[0] else b if a[1] else 3) % 16",
                 "result.next = (a if index[0] else b) == 3",
                 "'''A text.'''\nresult.next = a",
                 "result.next = concat(a[3:], a[3] ^ a[2])",

@@ -63,8 +63,8 @@ def test_soak(words, seeds, reflections, pixels, output):
 
 @pytest.mark.slow
 def test_a_wrong_scene_shrinks(bench, output, tmp_path):
-    """A design that swaps the bounds on one axis loses rectangles; one rectangle is enough to show it."""
-    fault = "rect_sorter", "(written_y_0 > written_y_1)", "(written_y_0 <= written_y_1)"
+    """A design that takes an upper bound for the lower one loses rectangles; one rectangle is enough to show it."""
+    fault = "rect_sorter", "y_low = (written_y_0 > ", "y_low = (written_y_0 <= "
     files = broken(convert(SEED, BUILD), tmp_path, *fault)
     with pytest.raises(SimulationError, match="wrong pixels in the scenes of seeds"):
         bench("verif.soak.bench", SEED, "icarus", verilog=files, seeds=(0, 1, 5))

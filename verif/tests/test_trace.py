@@ -242,7 +242,7 @@ FAULTS = {
         ("rect_sequencer", "offered <= candidates != 0", "offered <= 0"),
         ("ray_sequencer", "bounce == picture_reflections", "bounce == 0"),
         ("colour_sum", "total + weighted", "total - weighted"),
-        ("colour_combiner", "ray_colour_word = found_colour", "ray_colour_word = ~found_colour"),
+        ("colour_combiner", "? found_colour :", "? ~found_colour :"),
         ("line_buffer", "read_address = read_offset;", "read_address = 1 + read_offset;"),
         ("video_generator", "vga_g <= pixel_green", "vga_g <= pixel_red"),
     ],
@@ -273,7 +273,7 @@ FAULTS = {
     "seed-materials-patterns": [
         ("cell_parity", "odd = value[3 + each]", "odd = value[2 + each]"),
         ("pattern_colour", "second = odd_u != odd_v", "second = odd_u"),
-        ("colour_share", "half = weight >>> 1", "half = weight"),
+        ("colour_share", "(weight >>> 1)", "weight"),
         ("video_generator", "vga_blank_n <= (x", "vga_blank_n <= 0 && (x"),
     ],
     "exact-turn": [
@@ -286,11 +286,11 @@ FAULTS = {
         ("pattern_colour", "second = odd_u != odd_v", "second = odd_u"),
         ("shadow_ray", "facing <= light_a < found_surface_position", "facing <= light_a > found_surface_position"),
         ("shadow_sequencer", "shadow_pass_start = (state == AIM)", "shadow_pass_start = (state == WAIT)"),
-        ("ray_switch", "tested_eye_y = camera_light_y", "tested_eye_y = eye_y"),
+        ("ray_switch", "$signed({1'b0, camera_light_y})", "eye_y"),
         ("shadow_register", "reached < denominator", "reached > denominator"),
         ("exact_unit", "dark = camera_light_on", "dark = 0 && camera_light_on"),
         ("shade_colour", "red = shade * colour_red", "red = 3 * colour_red"),
-        ("colour_share", "half = weight >>> 1", "half = weight"),
+        ("colour_share", "(weight >>> 1)", "weight"),
     ],
     "span-turn": [
         ("camera_mem", "camera_word = whole", "camera_word = whole ^ 'h100"),
@@ -298,11 +298,11 @@ FAULTS = {
     ],
     "span-materials-patterns-light-corner": [
         ("corner_finder", "corner <= at_left", "corner <= 0"),
-        ("cell_walker", "number = present + 1", "number = present + 2"),
+        ("cell_walker", "(present + 1)", "(present + 2)"),
     ],
     "span-materials-patterns-light": [
         ("pattern_colour", "second = odd_u != odd_v", "second = odd_u"),
-        ("surface_light", "front = light_a < rect_position", "front = light_a > rect_position"),
+        ("surface_light", "(light_a < rect_position)", "(light_a >= rect_position)"),
         ("shadow_finder", "offset = light_q - eye_q", "offset = light_q + eye_q"),
         ("shadow_scan", "covers = begun", "covers = 0 && begun"),
         ("shade_colour", "red = shade * colour_red", "red = 3 * colour_red"),
