@@ -124,9 +124,7 @@ CHECKS = {
     "soak-seed": ("random scenes, surfaces of all kinds, full size", "seed", SOAKED),
     "soak-exact": ("random scenes, turned cameras and surfaces of all kinds, full size", "exact", SOAKED),
     "soak-light": ("random scenes with lights, turned cameras and surfaces of all kinds, 64x48", "exact", SOAKED),
-    "soak-span": (
-        "random scenes with lights, turned cameras and surfaces of all kinds, 320x240, two reflections", "span", SOAKED,
-    ),
+    "soak-span": ("random scenes with lights, turned cameras and surfaces of all kinds, 320x240", "span", SOAKED),
     "prove": ("proofs", "as the table below says", "{proved} of {proofs} proved".format_map),
     "mutate": (
         "faults planted in modules", "the modules' leaf tests",

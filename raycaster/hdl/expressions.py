@@ -72,6 +72,13 @@ class Range(NamedTuple):
         return max((~self.low).bit_length() if self.low < 0 else 0, self.high.bit_length()) + signed
 
 
+class Argument(NamedTuple):
+    """An argument of a call: its values, and the bits that MyHDL's ~ inverts, as `Expressions.inverted` finds them."""
+
+    values: Range
+    inverted: int | None
+
+
 class Context(NamedTuple):
     """The bits with which Verilog computes an expression, and True if with signs."""
 
@@ -82,16 +89,19 @@ class Context(NamedTuple):
 class Expressions:
     """The expressions of an analysed process, or of a function that it calls, as Verilog."""
 
-    def __init__(self, tree: Any, function_name: Callable[[Any, list[Range]], str], arguments: Mapping[str, Range]):
+    def __init__(
+        self, tree: Any, function_name: Callable[[Any, list[Argument]], str], arguments: Mapping[str, Argument]
+    ):
         """Find the ranges of variables.
 
         Args:
             tree: the process or function.
-            function_name: returns the name in Verilog of a function, from its tree and the ranges of its arguments.
-            arguments: ranges of a function's arguments.
+            function_name: returns the name in Verilog of a function, from its tree and its arguments.
+            arguments: a function's arguments.
         """
         self._tree, self._function_name, self._state = tree, function_name, internals.state_of(tree)
-        self._ranges = dict(arguments)
+        self._ranges = {name: argument.values for name, argument in arguments.items()}
+        self._inverted = {name: argument.inverted for name, argument in arguments.items()}
         self._assumed: dict[str, int] = {}
         self._around: list[Any] = []
         self._find_ranges()
@@ -163,6 +173,7 @@ class Expressions:
 
     def check_integer(self, value: ast.expr, known: Any, name: str) -> None:
         """Refuse a value that a Verilog integer, or a bit, does not hold, for a variable or result of this type."""
+        known = known.val if isinstance(known, SignalType) else known
         around = self.range(value)
         bits = around.bits(True)
         if _is_integer(known) and bits > INTEGER_BITS:
@@ -171,6 +182,11 @@ class Expressions:
         if isinstance(known, bool) and _around(around, Range(0, 1)) != Range(0, 1):
             self.refuse(value, f"{name} is one bit in Verilog, and may be {around.low} to {around.high} here; write "
                         "not for a bit")  # fmt: skip
+        # MyHDL takes ~ for a value of its operand's type.
+        inverse = isinstance(value, ast.UnaryOp) and isinstance(value.op, ast.Invert) and isinstance(known, intbv)
+        if inverse and _around(around, held := _all_of(*_shape(known))) != held:
+            self.refuse(value, f"{name} holds {held.low} to {held.high} in Verilog, and may be {around.low} to "
+                        f"{around.high} here; use an intbv(0, min=..., max=...)")  # fmt: skip
 
     def initial(self, value: Any) -> str:
         """Return an initial value."""
@@ -465,9 +481,9 @@ class Expressions:
         inner = Expressions(tree, self._function_name, dict(zip(tree.argnames, self.arguments(node), strict=True)))
         return inner, [one.value for one in ast.walk(tree) if isinstance(one, ast.Return) and one.value is not None]
 
-    def arguments(self, node: ast.Call) -> list[Range]:
-        """Return the ranges of a call's arguments."""
-        return [self.range(argument) for argument in node.args]
+    def arguments(self, node: ast.Call) -> list[Argument]:
+        """Return a call's arguments."""
+        return [Argument(self.range(argument), self.inverted(argument)) for argument in node.args]
 
     def _object(self, node: Any) -> Any:
         """Return what MyHDL knows of an expression: its signal, its memory, or a value of its type."""
@@ -512,16 +528,38 @@ class Expressions:
         return isinstance(self._value(node), bool)
 
     def _own_bits(self, node: ast.expr) -> int:
-        """Return the bits that MyHDL's ~ inverts, 0 if it makes a negative number."""
-        if isinstance(node, ast.Call) and _tree(node):
-            inner, results = self._results(node)
-            if sides := [side for one in results if isinstance(one, ast.IfExp) for side in _sides(one)]:
-                if any(map(inner._own_bits, sides)):
-                    self.refuse(node, "~ inverts the bits of the side that is chosen; write it in the function")
-                return 0
-        leaf = isinstance(node, (ast.Name, ast.Attribute, ast.Subscript, ast.Call))
-        bits, signed = self._type(node)
-        return bits if leaf and not signed and isinstance(self._value(node), intbv) else 0
+        """Return the bits that MyHDL's ~ inverts, 0 if it makes a negative number; refuse others than Verilog's."""
+        bits = self.inverted(node)
+        if bits is None or bits not in (0, self._type(node)[0]):
+            self.refuse(node, f"~ inverts the bits that {ast.unparse(node)} has in Python, which is not known here; "
+                        "assign it to a signal first")  # fmt: skip
+        return bits
+
+    def inverted(self, node: ast.expr) -> int | None:
+        """Return the bits that a value has in Python, 0 if it is a number without a width; None if that varies."""
+        match node:
+            case ast.IfExp():
+                return _only([self.inverted(node.body), self.inverted(node.orelse)])
+            case ast.Name(id=name) if name in self._inverted:
+                return self._inverted[name]
+            case ast.Name(id=name) if values := self._bound(name):
+                self._inverted[name] = None  # while it depends on itself
+                self._inverted[name] = _only([*map(self.inverted, values)])
+                return self._inverted[name]
+            case ast.Call() if _tree(node):
+                inner, results = self._results(node)
+                return _only([*map(inner.inverted, results)])
+            case ast.Name() | ast.Attribute() | ast.Subscript() | ast.Call() if isinstance(self._value(node), intbv):
+                bits, signed = self._type(node)
+                return 0 if signed else bits
+        return 0
+
+    def _bound(self, name: str) -> list[ast.expr]:
+        """Return the values that a variable is made of."""
+        return [
+            part.value for part in ast.walk(self._tree)
+            if isinstance(part, ast.Assign) and isinstance(part.targets[0], ast.Name) and part.targets[0].id == name
+        ]  # fmt: skip
 
     def _parts(self, node: ast.expr) -> list[ast.expr]:
         """Return the operands that share the context of an expression; none if it is an operand itself."""
@@ -726,7 +764,7 @@ class Expressions:
             for argument, formal in zip(node.args, tree.argnames, strict=True):
                 bits, signed = _shape(tree.symdict[formal])
                 around, held = self.range(argument), _all_of(bits, signed)
-                texts.append(self.text(argument))
+                texts.append(self.text(argument, bits))
                 if _around(around, held) != held:
                     self.refuse(node, f"{formal} holds {held.low} to {held.high} in Verilog, and may be {around.low} "
                                 f"to {around.high} here; assign the argument to a signal first")  # fmt: skip
@@ -901,9 +939,9 @@ def _chain(node: Any) -> Iterator[ast.expr]:
         yield node
 
 
-def _sides(node: ast.expr) -> list[ast.expr]:
-    """Return the sides of a choice, and of the choices that these are."""
-    return [*_sides(node.body), *_sides(node.orelse)] if isinstance(node, ast.IfExp) else [node]
+def _only(values: Sequence[int | None]) -> int | None:
+    """Return the value that all are, 0 if there is none; None if they differ."""
+    return values[0] if values and len({*values}) == 1 else None if values else 0
 
 
 def _changed(statement: ast.stmt) -> Iterator[str]:

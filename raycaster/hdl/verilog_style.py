@@ -12,7 +12,7 @@ from myhdl import ConcatSignal
 
 from raycaster.hdl import internals
 from raycaster.hdl.contents import Contents, Instance, Loading, check_keyword, is_signed, refusal
-from raycaster.hdl.expressions import Expressions, Range
+from raycaster.hdl.expressions import Argument, Expressions
 from raycaster.hdl.internals import Constant, EnumItemType, SignalType, operands_of, states_by_name
 from raycaster.hdl.port_comments import Comments
 from raycaster.hdl.records import Joined
@@ -218,19 +218,19 @@ def _statements(
     tree: Any,
     contents: Contents,
     functions: dict[str, str],
-    arguments: Mapping[str, Range] | None = None,
+    arguments: Mapping[str, Argument] | None = None,
     keeps: bool = False,
 ) -> Statements:
     """Return the printer of a process or a function, which adds to `functions` those that it calls, by name."""
     keeps = keeps or internals.keeps(tree)
 
-    def name_of(called: Any, ranges: Sequence[Range]) -> str:
+    def name_of(called: Any, arguments: Sequence[Argument]) -> str:
         for name in (*called.argnames, *called.vardict):
             check_keyword(contents.block, name)
         if not keeps and (read := internals.signals_read_around(called)):
             raise refusal(contents.block, f"{called.body[0].name} reads {read[0]}, for which nothing waits in MyHDL; "
                           "make it an argument", read[0])  # fmt: skip
-        given = dict(zip(called.argnames, ranges, strict=True))
+        given = dict(zip(called.argnames, arguments, strict=True))
         text = _statements(called, contents, functions, given, keeps).printed_function("\0")
         known = next((name for name, other in functions.items() if other == text), None)
         name = known or contents.free(called.body[0].name)

@@ -196,6 +196,7 @@ def functions_and_latches_read_signals(clk, a, only, around, gate, y, kept, late
         if gate:
             held.next = a
 
+    # MyHDL does not run it before a changes, so low begins as a = 0 makes it.
     @always(a)
     def cut():
         low.next[2:] = a[2:]

@@ -198,7 +198,23 @@ def process(statements: str) -> str:
         ),
         (
             "def either(x):\n    return x if x else 1\n" + process("result.next = ~either(index)"),
-            "~ inverts the bits of the side that is chosen; write it in the function",
+            "~ inverts the bits that either(index) has in Python, which is not known here; assign it to a signal first",
+        ),
+        (
+            "def flip(x):\n    return ~x\n" + process("result.next = flip(a if b else index)"),
+            "~ inverts the bits that x has in Python, which is not known here; assign it to a signal first",
+        ),
+        (
+            "def flip(x):\n    return ~x\n" + process("result.next = flip(~a) % 16"),
+            "the result holds 0 to 15 in Verilog, and may be -16 to -1 here; use an intbv(0, min=..., max=...)",
+        ),
+        (
+            "def flip(x):\n    return ~x\n" + process("result.next = flip(b[0]) % 16"),
+            "the result is one bit in Verilog, and may be -2 to -1 here",
+        ),
+        (
+            process("part = a[2:]\nresult.next = ~part"),
+            "~ inverts the bits that part has in Python, which is not known here; assign it to a signal first",
         ),
         (
             "def same(x):\n    return x + 0\n" + process("result.next = same(~(a > b))"),
@@ -328,6 +344,7 @@ def test_other_wrong_forms_are_refused(body, reason, tmp_path):
                 "result.next = ~index == a",
                 "result.next = ~index",
                 "result.next = ~(index if a[0] else b if a[1] else 3) % 16",
+                "part = ~a\nresult.next = ~part % 16",
                 "result.next = (a if index[0] else b) == 3",
                 "'''A text.'''\nresult.next = a",
                 "result.next = concat(a[3:], a[3] ^ a[2])",
@@ -337,6 +354,7 @@ def test_other_wrong_forms_are_refused(body, reason, tmp_path):
                 "'''A\x0ctext\u2028of\rlines.'''\nresult.next = a",
             )
         ),
+        ("def same(x):\n    return x\n" + process("result.next = same(~a if b else ~index) % 16"), 40),
         (
             "@block\ndef inner(a, b, result):\n    @always_comb\n    def go():\n        result.next = a ^ (b >> 1)\n"
             "    return go\none = inner(a, a, result)\n",
