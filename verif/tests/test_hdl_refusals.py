@@ -209,7 +209,7 @@ def process(statements: str) -> str:
             "the result holds 0 to 15 in Verilog, and may be -16 to -1 here; use an intbv(0, min=..., max=...)",
         ),
         (
-            "def flip(x):\n    return ~x\n" + process("result.next = flip(b[0]) % 16"),
+            "def flip(x):\n    return ~x\n" + process("result.next = flip(clk) % 16"),
             "the result is one bit in Verilog, and may be -2 to -1 here",
         ),
         (
