@@ -139,8 +139,8 @@ class Expressions:
                 self.refuse(target, f"MyHDL assigns to a copy of these bits; write {name}.next[...]")
             inner = at
         target = outer
-        if isinstance(target, ast.Name):
-            self.check_integer(value, self._object(target), target.id)
+        if isinstance(target, ast.Name) and target.id in self._tree.vardict:
+            self.check_integer(value, self._value(target), target.id)
         modulo = self._power(value.right) if isinstance(value, ast.BinOp) and isinstance(value.op, ast.Mod) else None
         folded = self.constant(value) is not None
         if modulo == bits and not folded and isinstance(value, ast.BinOp) and isinstance(value.right, ast.BinOp):
@@ -173,7 +173,6 @@ class Expressions:
 
     def check_integer(self, value: ast.expr, known: Any, name: str) -> None:
         """Refuse a value that a Verilog integer, or a bit, does not hold, for a variable or result of this type."""
-        known = known.val if isinstance(known, SignalType) else known
         around = self.range(value)
         bits = around.bits(True)
         if _is_integer(known) and bits > INTEGER_BITS:

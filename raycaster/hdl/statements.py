@@ -362,7 +362,7 @@ class Statements:
             return []
         known = self._tree.returnObj
         bits = getattr(known, "_nrbits", 1 if isinstance(known, bool) else 32)
-        self._expressions.check_integer(value, known, "the result")
+        self._expressions.check_integer(value, known.val if isinstance(known, SignalType) else known, "the result")
         return [f"{self._function} = {self._expressions.text(value, bits)};"]
 
     def _end_in_returns(self, body: list[Any]) -> None:

@@ -221,7 +221,8 @@ class Batch:
         except RuntimeError as error:
             lines = [line for line in str(error).splitlines() if FAULT.search(line)] or ["no message"]
             if len(cases) == 1:
-                own = "Internal Error" in lines[0]  # a fault of the tool
+                # Faults of the tools: Verilator stops, or vvp can't read what iverilog wrote.
+                own = "Internal Error" in lines[0] or "batch.vvp" in lines[0]
                 cases[0].end("discarded" if own else f"{tool} refuses", lines[0])
                 return
             # Those that the messages name; if they name none, one half and then the other.
