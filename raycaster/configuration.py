@@ -25,6 +25,9 @@ MOST_RECTANGLES = 128
 MOST_REFLECTIONS = 4
 """Largest number of reflections per ray."""
 
+MOST_RUNS = 1 << 20
+"""Largest capacity of a frame list."""
+
 CHANNEL_BITS = 8
 """Bits per colour channel inside the hardware, before the video output."""
 
@@ -145,7 +148,7 @@ class Options:
     list: Whole | None = Field(
         None,
         ge=0,
-        le=1 << 20,
+        le=MOST_RUNS,
         multiple_of=2,
         description="capacity of each of the two frame lists, in runs of one colour (span); by default 120 per row, or "
         "a run per column if that is less",

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import raycaster
 from raycaster import golden, sim
-from raycaster.configuration import MOST_REFLECTIONS, Configuration
+from raycaster.configuration import MOST_REFLECTIONS, MOST_RUNS, Configuration
 from raycaster.convert.digest import verilog_digest
 from raycaster.design.decide import configure
 from raycaster.design.options import (
@@ -134,7 +134,12 @@ def command_parser() -> CommandParser:
 
 
 def _configuration(arguments: argparse.Namespace) -> Configuration:
-    return configure(**{"reflections": MOST_REFLECTIONS} | given_options(arguments))
+    """Return the design that draws the scenes; a random one may have a run per column, so its lists hold as many."""
+    options = {"reflections": MOST_REFLECTIONS} | given_options(arguments)
+    config = configure(**options)
+    if config.facts.whole_frames and "list" not in options:
+        config = configure(**options, list=min(config.rows * config.screen_geometry.columns, MOST_RUNS))
+    return config
 
 
 def verilog(arguments: argparse.Namespace) -> str:
