@@ -181,7 +181,7 @@ class Expressions:
         if isinstance(known, bool) and _around(around, Range(0, 1)) != Range(0, 1):
             self.refuse(value, f"{name} is one bit in Verilog, and may be {around.low} to {around.high} here; write "
                         "not for a bit")  # fmt: skip
-        # MyHDL takes ~ for a value of its operand's type.
+        # MyHDL gives the result of ~ the type of its operand.
         inverse = isinstance(value, ast.UnaryOp) and isinstance(value.op, ast.Invert) and isinstance(known, intbv)
         if inverse and _around(around, held := _all_of(*_shape(known))) != held:
             self.refuse(value, f"{name} holds {held.low} to {held.high} in Verilog, and may be {around.low} to "
@@ -527,7 +527,7 @@ class Expressions:
         return isinstance(self._value(node), bool)
 
     def _own_bits(self, node: ast.expr) -> int:
-        """Return the bits that MyHDL's ~ inverts, 0 if it makes a negative number; refuse others than Verilog's."""
+        """Return how many bits MyHDL's ~ inverts, 0 for a negative number; refuse it if Verilog inverts others."""
         bits = self.inverted(node)
         if bits is None or bits not in (0, self._type(node)[0]):
             self.refuse(node, f"~ inverts the bits that {ast.unparse(node)} has in Python, which is not known here; "
@@ -554,7 +554,7 @@ class Expressions:
         return 0
 
     def _bound(self, name: str) -> list[ast.expr]:
-        """Return the values that a variable is made of."""
+        """Return the values that are assigned to a variable."""
         return [
             part.value for part in ast.walk(self._tree)
             if isinstance(part, ast.Assign) and isinstance(part.targets[0], ast.Name) and part.targets[0].id == name
@@ -939,8 +939,9 @@ def _chain(node: Any) -> Iterator[ast.expr]:
 
 
 def _only(values: Sequence[int | None]) -> int | None:
-    """Return the value that all are, 0 if there is none; None if they differ."""
-    return values[0] if values and len({*values}) == 1 else None if values else 0
+    """Return the value that all have, None if they differ, and 0 for no values."""
+    different = {*values} or {0}
+    return different.pop() if len(different) == 1 else None
 
 
 def _changed(statement: ast.stmt) -> Iterator[str]:
