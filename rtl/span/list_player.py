@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The monitor's side of the lists."""
 
-from myhdl import always_comb, block, concat, instances
+from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.hdl.signals import bit, bits_for, tied, unconnected, unsigned
 from raycaster.hdl.verbs import assign
@@ -91,13 +91,20 @@ def list_player(
         write_even, write_odd = writes
         first_even, first_odd = firsts
         take_even, take_odd = takes
-        odd = place(0)
+        odd = bit()
         bits, last = place_bits + 1, entries - 1
         left, right = (unsigned(len(written.pixel)) for _ in range(2))
         player = pair_player(
             clk, playing=playing, visible_line=scan.visible_line, next_column=scan.next_column, odd=odd,
             head_0=heads[0], head_1=heads[1], take_0=take_even, take_1=take_odd, left=left, right=right,
         )  # fmt: skip
+
+        @always(clk.posedge)
+        def follow():
+            if restart:
+                odd.next = place[0]
+            elif take_even != take_odd:
+                odd.next = not odd
 
         @always_comb
         def find_places():

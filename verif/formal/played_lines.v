@@ -97,8 +97,8 @@ end
 // The pixels of a clock, in lines of the picture and between them.
 always @* if (known && !$past(reset)) assert (shown == expected);
 
-// Invariants of the place, which is followed in the first cycles of a line's blanking.
-wire [4:0] place = dut.place;
+// Invariants of the present place, which is followed in the first cycles of a line's blanking.
+wire [4:0] place = dut.row_place_i.present;
 wire playing = dut.playing, restart = dut.restart;
 wire row_starts = dut.row_place_i.row_starts, screen_starts = dut.row_place_i.screen_starts;
 always @* if (known) begin
@@ -106,6 +106,7 @@ always @* if (known) begin
     assert (row_starts == ($past(start_row) && !$past(reset)));
     assert (screen_starts == ($past(start_screen) && !$past(reset)));
     assert (!(row_starts && screen_starts));
+    if (!was_visible) assert (dut.row_place_i.taken_before == 0);
     if (row_starts || screen_starts) assert (!visible && blank != 0 && blank <= 3);
     assert (dut.row_place_i.next_first == row_next);
     assert ((row_starts ? row_next : dut.row_place_i.row_first) == row_first);
@@ -162,6 +163,7 @@ generate for (i = 0; i < PIXELS; i = i + 1) begin: banks
     end
 end endgenerate
 generate if (PIXELS == 2) begin: pairs
+    always @* if (known && reads) assert (dut.odd == place[0]);
     always @* if (known && (visible || blank != 0)) assert (dut.pair_player_i.end_of_pair == column + 2);
     always @* if (known && (visible || blank != 0)) assert (dut.pair_player_i.column_end == column + 1);
 end else begin: singles

@@ -538,7 +538,7 @@ class SpanProbes(Description):
             make("entry of the list", "listed", COLLECTOR, "end pixel", self._listed, "entry", late=1),
             Probe("its place", (f"{COLLECTOR}.place",), "listed", lambda ray, _: (sight_of(ray).place,), late=1,
                 **hidden),
-            Probe("place shown", (f"{PLAYER}.row_place_i.place",), "shown", in_list, late=-1, **hidden),
+            Probe("place shown", (f"{PLAYER}.row_place_i.place",), "shown", in_list, **hidden),
             Probe("pixel of the list", (f"{PLAYER}.shown",), "shown", lambda ray, _: (ray.pixel,), decode=of_lane,
                 colour=True, narrow=True),
             *monitor_probes(RENDERER, "shown", VIDEO, config),
