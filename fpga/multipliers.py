@@ -4,25 +4,27 @@
 from __future__ import annotations
 
 import json
-from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-MULTIPLIER, REGISTER = "MULT18X18D", "TRELLIS_FF"
+MULTIPLIER, REGISTER, FACTOR_BITS = "MULT18X18D", "TRELLIS_FF", 18
 
 
 def register_products(netlist: Path) -> int:
-    """Use a multiplier's own output register if its product goes only into a register without enable or reset.
+    """Use a multiplier's own registers in place of those without enable or reset in the fabric.
 
-    Yosys does not infer these registers; nextpnr knows their timing. The path from the registers of the factors to that
-    of the product then crosses the fabric once instead of twice.
+    That is the output register if only a register reads the product, and otherwise, as for a part of a long product
+    that is still to be added, the input register of each factor that comes from one. Yosys does not infer these
+    registers; nextpnr knows their timing. The path from the registers of the factors to that of the product then
+    crosses the fabric once instead of twice.
 
     Args:
         netlist: JSON netlist from Yosys; replaced.
 
     Returns:
-        The number of multipliers that now have a register.
+        The number of multipliers that now have an output register.
     """
     design = json.loads(netlist.read_text())
     registered = sum(_register_products(module) for module in design["modules"].values())
@@ -40,23 +42,57 @@ def _register_products(module: Mapping[str, Any]) -> int:
     for port in module["ports"].values():
         for net in port["bits"]:
             readers[net].append(("", ""))
-    registered = 0
+    plain = {name for name, cell in cells.items() if cell["type"] == REGISTER and _is_plain(cell)}
+    registered, added = 0, []
     for multiplier in [cell for cell in cells.values() if cell["type"] == MULTIPLIER]:
         product = {port: readers[net] for port, net in _nets(multiplier, "output") if readers[net]}
         read = [reader for those in product.values() for reader in those]
-        names = [name for name, port in read if port == "DI" and _is_plain(cells[name])]
+        names = [name for name, port in read if port == "DI" and name in plain]
         clocks = {cells[name]["connections"]["CLK"][0] for name in names}
         if len(names) == len(read) == len(product) and len(clocks) == 1:
+            plain.difference_update(names)
             for port, name in zip(product, names, strict=True):
                 multiplier["connections"][port] = cells.pop(name)["connections"]["Q"]
             connect_register(multiplier, clocks.pop())
             registered += 1
+        else:
+            added.append(multiplier)
+    _register_factors(added, cells, {cells[name]["connections"]["Q"][0]: name for name in plain}, readers)
     return registered
 
 
-def connect_register(multiplier: dict[str, Any], clock: int) -> None:
-    """Delay a multiplier's product by one cycle of this clock net; enable and reset are tied off, not left open."""
-    multiplier["parameters"]["REG_OUTPUT_CLK"] = "CLK0"
+def _register_factors(
+    multipliers: Sequence[dict[str, Any]], cells: dict[str, Any], registers: Mapping[int, str],
+    readers: Mapping[int | str, Sequence[tuple[str, str]]],
+) -> None:  # fmt: skip
+    """Move the registers of whole factors; those that others read as well stay, too.
+
+    Args:
+        multipliers: multipliers without an output register.
+        cells: all cells of the module, by name.
+        registers: names of the plain registers, by the net that they drive.
+        readers: names and ports of the cells that read each net.
+    """
+    taken: Counter[int | str] = Counter()
+    for multiplier in multipliers:
+        connections = multiplier["connections"]
+        for factor in "AB":
+            ports = [f"{factor}{place}" for place in range(FACTOR_BITS)]
+            nets = {port: connections[port][0] for port in ports if connections[port] != ["0"]}
+            held = {port: cells[registers[net]]["connections"] for port, net in nets.items() if net in registers}
+            clocks = {register["CLK"][0] for register in held.values()}
+            if len(held) == len(nets) and len(clocks) == 1:
+                connections |= {port: register["DI"] for port, register in held.items()}
+                connect_register(multiplier, clocks.pop(), f"INPUT{factor}")
+                taken.update(nets.values())
+    for net, count in taken.items():
+        if count == len(readers[net]):
+            del cells[registers[net]]
+
+
+def connect_register(multiplier: dict[str, Any], clock: int, place: str = "OUTPUT") -> None:
+    """Delay a product, or the factor at INPUTA or INPUTB, by a cycle of this clock net, without enable and reset."""
+    multiplier["parameters"][f"REG_{place}_CLK"] = "CLK0"
     for port, net in {"CLK0": clock, "CE0": "1", "RST0": "0"}.items():
         multiplier["port_directions"][port] = "input"
         multiplier["connections"][port] = [net]
@@ -69,11 +105,7 @@ def _nets(cell: Mapping[str, Any], direction: str) -> Iterator[tuple[str, int | 
 
 
 def _is_plain(cell: Mapping[str, Any]) -> bool:
-    """Return True if a cell is a register that captures a value at each edge, and starts at 0."""
+    """Return True if a register captures a value at each edge, and starts at 0."""
     parameters = {name: value.strip() for name, value in cell["parameters"].items()}
     always = {"CEMUX": "1", "CLKMUX": "CLK", "REGSET": "RESET"}
-    return (
-        cell["type"] == REGISTER
-        and all(parameters[name] == value for name, value in always.items())
-        and cell["connections"]["LSR"] == ["0"]
-    )
+    return all(parameters[name] == value for name, value in always.items()) and cell["connections"]["LSR"] == ["0"]

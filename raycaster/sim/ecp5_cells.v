@@ -3,8 +3,8 @@
 // Lattice's guides FPGA-TN-02205 (sysDSP) and FPGA-TN-02204 (memory). Instances of unmodelled_parameter, a module that
 // does not exist, refuse other modes.
 
-// The product of two factors, each signed or not, and its optional register. A product that depends on shifted factors,
-// or on the enable or the reset of its register, is unknown.
+// The product of two factors, each signed or not, and the optional registers of all three. A product that depends on
+// shifted factors, or on the enable or the reset of a register, is unknown.
 module MULT18X18D #(
     parameter REG_OUTPUT_CLK = "NONE", REG_OUTPUT_CE = "CE0", REG_OUTPUT_RST = "RST0",
     REG_INPUTA_CLK = "NONE", REG_INPUTA_CE = "CE0", REG_INPUTA_RST = "RST0",
@@ -21,8 +21,12 @@ module MULT18X18D #(
     output wire P35, P34, P33, P32, P31, P30, P29, P28, P27, P26, P25, P24, P23, P22, P21, P20, P19, P18, P17, P16, P15,
         P14, P13, P12, P11, P10, P9, P8, P7, P6, P5, P4, P3, P2, P1, P0
 );
-    wire [17:0] a = {A17, A16, A15, A14, A13, A12, A11, A10, A9, A8, A7, A6, A5, A4, A3, A2, A1, A0};
-    wire [17:0] b = {B17, B16, B15, B14, B13, B12, B11, B10, B9, B8, B7, B6, B5, B4, B3, B2, B1, B0};
+    wire [17:0] given_a = {A17, A16, A15, A14, A13, A12, A11, A10, A9, A8, A7, A6, A5, A4, A3, A2, A1, A0};
+    wire [17:0] given_b = {B17, B16, B15, B14, B13, B12, B11, B10, B9, B8, B7, B6, B5, B4, B3, B2, B1, B0};
+    wire on = CE0 === 1'b1 && RST0 === 1'b0;
+    reg [17:0] held_a = 0, held_b = 0;
+    wire [17:0] a = REG_INPUTA_CLK == "NONE" ? given_a : held_a;
+    wire [17:0] b = REG_INPUTB_CLK == "NONE" ? given_b : held_b;
     wire signed [18:0] left = {SIGNEDA & a[17], a};
     wire signed [18:0] right = {SIGNEDB & b[17], b};
     wire signed [37:0] whole = left * right;
@@ -33,13 +37,18 @@ module MULT18X18D #(
         P14, P13, P12, P11, P10, P9, P8, P7, P6, P5, P4, P3, P2, P1, P0} =
         REG_OUTPUT_CLK == "NONE" ? product : held;
 
-    always @(posedge CLK0)
-        held <= CE0 === 1'b1 && RST0 === 1'b0 ? product : 36'bx;
+    always @(posedge CLK0) begin
+        held_a <= on ? given_a : 18'bx;
+        held_b <= on ? given_b : 18'bx;
+        held <= on ? product : 36'bx;
+    end
 
     generate
         if (REG_OUTPUT_CLK != "NONE" && REG_OUTPUT_CLK != "CLK0" || REG_OUTPUT_CE != "CE0" || REG_OUTPUT_RST != "RST0")
             unmodelled_parameter output_register();
-        if (REG_INPUTA_CLK != "NONE" || REG_INPUTB_CLK != "NONE" || REG_INPUTC_CLK != "NONE")
+        if (REG_INPUTA_CLK != "NONE" && REG_INPUTA_CLK != "CLK0" || REG_INPUTA_CE != "CE0" || REG_INPUTA_RST != "RST0"
+            || REG_INPUTB_CLK != "NONE" && REG_INPUTB_CLK != "CLK0" || REG_INPUTB_CE != "CE0" || REG_INPUTB_RST != "RST0"
+            || REG_INPUTC_CLK != "NONE")
             unmodelled_parameter input_register();
         if (REG_PIPELINE_CLK != "NONE" || MULT_BYPASS != "DISABLED" || CAS_MATCH_REG != "FALSE")
             unmodelled_parameter pipeline();

@@ -111,7 +111,8 @@ module cells (
     output reg [35:0] whole,
     output reg signed [35:0] negative,
     output reg [15:0] nine,
-    output reg signed [43:0] split
+    output reg signed [43:0] split, long, rare, fresh,
+    output reg signed [23:0] read_twice
 );
     // Few addresses, so that they meet; they use the lowest and the highest bits.
     wire [13:0] high = {at[2], 11'b0, at[1:0]}, low = {from[2], 11'b0, from[1:0]};
@@ -146,6 +147,10 @@ module cells (
     wire signed [18:0] shared = x * (y + 9'sd3), again_too = (x + 10'sd3) * y;
     reg signed [18:0] again;
 
+    // Products of more than one multiplier; the factors of `long` come from plain registers, one of which is read twice.
+    reg signed [23:0] left, left_rare;
+    reg signed [19:0] right, right_fresh;
+
     assign now = shared;
 
     always @(posedge clk) begin
@@ -162,5 +167,14 @@ module cells (
         negative <= $signed(a[17:0]) * $signed(b[17:0]);
         nine <= a[7:0] * b[7:0];
         split <= $signed(a[23:0]) * $signed(b[19:0]);
+        left <= a[23:0] ^ b[30:7];
+        right <= b[19:0] ^ a[35:16];
+        long <= left * right;
+        read_twice <= left;
+        if (enable)
+            left_rare <= a[25:2];
+        right_fresh <= clear ? 20'sd0 : b[22:3];
+        rare <= left_rare * $signed(b[20:1]);
+        fresh <= $signed(a[26:3]) * right_fresh;
     end
 endmodule

@@ -5,7 +5,7 @@
 `timescale 1ns / 1ps
 
 module cells_bench;
-    localparam WIDTH = 575;
+    localparam WIDTH = 731;
 
     reg clk = 1'b0, enable, clear;
     reg [35:0] a, b;
@@ -18,7 +18,8 @@ module cells_bench;
         clk, enable, clear, a, b, at, from, write, \
         out[8:0], out[44:9], out[80:45], out[116:81], out[152:117], out[188:153], out[224:189], out[260:225], \
         out[278:261], out[296:279], out[315:297], out[334:316], out[353:335], out[372:354], out[391:373], \
-        out[403:392], out[423:404], out[442:424], out[478:443], out[514:479], out[530:515], out[574:531] )
+        out[403:392], out[423:404], out[442:424], out[478:443], out[514:479], out[530:515], out[574:531], \
+        out[618:575], out[662:619], out[706:663], out[730:707] )
     wanted_cells rtl `PORTS(wanted);
     cells netlist `PORTS(made);
 

@@ -184,7 +184,8 @@ CYCLES = 100
 
 MODES = {
     "ecp5": {"DATA_WIDTH_A": "1 2 4 9 18 36", "DATA_WIDTH_B": "1 2 4 18 36", "RESETMODE": "ASYNC SYNC",
-             "WRITEMODE_A": "NORMAL READBEFOREWRITE WRITETHROUGH", "REG_OUTPUT_CLK": "CLK0"},
+             "WRITEMODE_A": "NORMAL READBEFOREWRITE WRITETHROUGH", "REG_OUTPUT_CLK": "CLK0", "REG_INPUTA_CLK": "CLK0",
+             "REG_INPUTB_CLK": "CLK0"},
     "gowin": {"BIT_WIDTH": "9 18 36", "BIT_WIDTH_0": "1 2 4 9 18 36", "WRITE_MODE": "0 1 2"},
     "ice40": {"READ_MODE": "0 1 2 3", "A_SIGNED": "0 1", "TOPOUTPUT_SELECT": "1 3"},
 }  # fmt: skip
@@ -251,6 +252,8 @@ def test_cells(placed, tmp_path, family):
             ("ecp5", "sign", "SIGNEDA & a[17]", "a[17]"),
             ("ecp5", "no-sign", "SIGNEDB & b[17]", "1'b0"),
             ("ecp5", "product-register", 'REG_OUTPUT_CLK == "NONE" ? product', 'REG_OUTPUT_CLK != "" ? product'),
+            ("ecp5", "factor-a-register", 'REG_INPUTA_CLK == "NONE" ? given_a', 'REG_INPUTA_CLK != "" ? given_a'),
+            ("ecp5", "factor-b-register", 'REG_INPUTB_CLK == "NONE" ? given_b', 'REG_INPUTB_CLK != "" ? given_b'),
             ("ecp5", "halves", "DATA_WIDTH_B == 36 ? from_b[17:0]", "DATA_WIDTH_B == 36 ? from_b[35:18]"),
             ("ecp5", "halves-written", ".data_a({to_b, to_a})", ".data_a({to_a, to_b})"),
             ("ecp5", "contents", "SLICES[20 * word +: 18]", "SLICES[18 * word +: 18]"),
@@ -283,7 +286,7 @@ def test_a_faulty_model_is_noticed(placed, tmp_path, family, right, wrong):
     [
         pytest.param("_is_plain", lambda cell: cell["connections"]["LSR"] == ["0"], id="enable"),
         pytest.param("_is_plain", lambda cell: cell["parameters"]["CEMUX"].strip() == "1", id="reset"),
-        pytest.param("connect_register", lambda multiplier, clock: None, id="no-register"),
+        pytest.param("connect_register", lambda multiplier, clock, place="OUTPUT": None, id="no-register"),
     ],
 )
 def test_a_faulty_rewrite_is_noticed(placed, tmp_path, monkeypatch, name, value):
