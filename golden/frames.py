@@ -65,7 +65,7 @@ def frame_cycles(rows: Iterable[Row], columns: int, units: int = 1, places: int 
 
 def model_for(scene: Scene, config: Configuration, reflections: int | None = None) -> SpanModel:
     """Return the model of a design that draws a scene, with its own reflections if none are given."""
-    model = SpanModel.of_scene(scene, config.screen_geometry, reflections)
+    model = replace(SpanModel.of_scene(scene, config.screen_geometry, reflections), varied=config.varied)
     # A scene that is built in may lack rectangles that are not seen.
     return replace(model, rectangles=Rectangles.of_fixed(config.fixed.rectangles)) if config.fixed else model
 

@@ -214,6 +214,8 @@ class SpanModel:
     columns: int
     reflections: int
     light: Light | None = None
+    varied: bool = False
+    """The design has patterns or a light: colours are kept for a cycle before they are mixed."""
 
     @cached_property
     def table(self) -> tuple[Rect, ...]:
@@ -429,7 +431,7 @@ class Drawing:
         """Mix the colours of all levels, up to a column."""
         while True:
             self.result.steps["parts"] += 1
-            self.now += len(self.shown) + 1
+            self.now += len(self.shown) + 1 + self.model.varied
             end = min([stop, *(surface.next for surface in self.shown)])
             self.run(end)
             if end == stop:
@@ -577,7 +579,10 @@ class Drawing:
         for entry in entries:
             self.now += 1
             found = self.takes(entry, winner, column, stop) if winner else self.begins(entry, column, stop)
-            if found is not None and (found < stop or heir is None or self.precedes(entry, heir, stop)):
+            if found is None:
+                continue
+            self.now += 1
+            if found < stop or heir is None or self.precedes(entry, heir, stop):
                 stop, heir = found, entry
         self.now += 1
         return stop, heir
@@ -613,5 +618,5 @@ class Drawing:
         if entry.rect.axis == heir.rect.axis:
             return heir.follows(entry)
         self.result.steps["orders"] += 1
-        self.now += 1 + ANSWER
+        self.now += ANSWER
         return order(entry, heir).at(column) >= 0

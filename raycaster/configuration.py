@@ -225,6 +225,11 @@ class Configuration(Options):
         return self.table, self.facts.whole_frames
 
     @property
+    def varied(self) -> bool:
+        """True if a surface has more than one colour, by patterns or a light."""
+        return self.patterns or self.light
+
+    @property
     def most_reflections(self) -> int:
         """Most reflections per ray; a scene may ask for fewer."""
         return self.reflections

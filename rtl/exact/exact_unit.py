@@ -54,7 +54,7 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
     numerator, found_distance = (unsigned(eye_bits(config) - 1) for _ in range(2))
     slope_bits = exact_slope_bits(config)
     denominator = unsigned(slope_bits)
-    found_slope = unsigned(slope_bits) if config.patterns or config.light else unconnected(slope_bits)
+    found_slope = unsigned(slope_bits) if config.varied else unconnected(slope_bits)
     colour = unsigned(RGB_BITS) if config.patterns else found_surface.colour
     ray, shown, tested_denominator = (eye, signs, slope, mirror), colour, denominator
     if config.light:

@@ -63,7 +63,7 @@ def half_lines(
     seeing, walking = bit(), bit()
     lit = from_light if config.light else tied(0, 1)
     asked_axis = unsigned(AXIS_BITS)
-    waiting, candidates, others = (unsigned(count) for _ in range(3))
+    waiting, others = unsigned(count), unsigned(count)
     lowest, upcoming, index = (unsigned(index_width) for _ in range(3))
     offered, at_hand, passes, weighed, take, fetch, moving = (bit() for _ in range(7))
     fore_left, fore_right, aft_left, aft_right = (unsigned(3) for _ in range(4))
@@ -122,18 +122,16 @@ def half_lines(
     # In a column with a slope of 0, each component is 0 or changes its sign within the chain.
     see_vanishing = assign(may_vanish, lambda: ((fore_left & fore_right) | (aft_left & aft_right)) == 0)
 
-    choose_candidates = assign(candidates, lambda: rects.usable if start else waiting)
-
     if count <= MOST_IN_A_CHAIN:
 
         @always_comb
         def choose_rectangle():
             lowest.next = 0
-            others.next = candidates
+            others.next = waiting
             for i in range(count - 1, -1, -1):
-                if candidates[i]:
+                if waiting[i]:
                     lowest.next = i
-                    others.next = candidates
+                    others.next = waiting
                     others.next[i] = 0
 
     else:
@@ -143,10 +141,10 @@ def half_lines(
         )
 
         # Subtracting 1 changes the bits up to the lowest one that is set.
-        count_down = assign(below, lambda: (candidates - 1) % (1 << count))
+        count_down = assign(below, lambda: (waiting - 1) % (1 << count))
 
-        drop_first = assign(others, lambda: candidates & below)
-        find_first = assign(first, lambda: candidates & ~below)
+        drop_first = assign(others, lambda: waiting & below)
+        find_first = assign(first, lambda: waiting & ~below)
 
         # Each bit of the number is set if the rectangle is among those whose numbers have it.
         @always_comb
@@ -166,7 +164,7 @@ def half_lines(
 
     @always_comb
     def show_fetch():
-        moving.next = start or fetch
+        moving.next = fetch or (seeing and asked_axis == 0)
         rects.index.next = upcoming
         rects.fetch.next = fetch
 
@@ -174,8 +172,10 @@ def half_lines(
     def offer():
         if reset:
             offered.next = False
+        elif start:
+            waiting.next = rects.usable
         elif moving:
-            offered.next = candidates != 0
+            offered.next = waiting != 0
             upcoming.next = lowest
             waiting.next = others
 

@@ -45,26 +45,34 @@ def painter(
     colour, mixed = Colour(), Colour()
     last, offers = bit(), bit()
     # Without patterns and a light, a span is one run.
-    changing = config.patterns or config.light
-    whole, again = (bit(), bit()) if changing else (tied(1, 1), tied(0, 1))
+    whole, again = (bit(), bit()) if config.varied else (tied(1, 1), tied(0, 1))
+    sums = bit()
+    share = unsigned(share_width) if config.varied else seen_share
     red_part, green_part, blue_part = (unsigned(share_width + CHANNEL_BITS) for _ in range(3))
     red, green, blue = (unsigned(sum_bits) for _ in range(3))
     red_shown, green_shown, blue_shown = (unsigned(CHANNEL_BITS) for _ in range(3))
 
-    see_colour = assign(colour.word, lambda: seen_colour)
-
     @always_comb
     def weigh():
-        red_part.next = seen_share * colour.red
-        green_part.next = seen_share * colour.green
-        blue_part.next = seen_share * colour.blue
+        red_part.next = share * colour.red
+        green_part.next = share * colour.green
+        blue_part.next = share * colour.blue
 
     @always_comb
     def see_end():
         last.next = seen == level
-        offers.next = (state == PaintState.OFFER) and not run.valid
+        offers.next = (state == PaintState.OFFER) and not (sums or run.valid)
 
-    if changing:
+    # With patterns or a light, it takes most of a cycle to find a colour.
+    if config.varied:
+        next_end = unsigned(len(place))
+
+        @always(clk.posedge)
+        def keep_seen():
+            sums.next = (state == PaintState.SUM) and not reset
+            share.next = seen_share
+            colour.word.next = seen_colour
+            next_end.next = next_column
 
         @always_comb
         def see_whole():
@@ -74,12 +82,14 @@ def painter(
 
         @always(clk.posedge)
         def find_place():
-            if emit or again:
+            if (state == PaintState.SUM) and not sums:
                 place.next = stop
-            elif (state == PaintState.SUM) and (next_column < place):
-                place.next = next_column
+            elif sums and (next_end < place):
+                place.next = next_end
 
     else:
+        see_colour = assign(colour.word, lambda: seen_colour)
+        see_sums = assign(sums, lambda: state == PaintState.SUM)
         show_place = assign(place, lambda: stop)
 
     see_emitted = assign(emitted, lambda: offers and whole)
@@ -99,18 +109,18 @@ def painter(
 
     @always(clk.posedge)
     def add():
-        if emit or again or offers:
+        if reset:
             seen.next = 0
+        elif (state == PaintState.SUM) or ((state == PaintState.STEP) and stepped):
+            seen.next = 0 if last else (seen + 1) % (1 << len(seen))
+        if reset or offers:
             red.next = 0
             green.next = 0
             blue.next = 0
-        elif state == PaintState.SUM:
-            seen.next = (seen + 1) % (1 << len(seen))
+        elif sums:
             red.next = (red + red_part) % (1 << sum_bits)
             green.next = (green + green_part) % (1 << sum_bits)
             blue.next = (blue + blue_part) % (1 << sum_bits)
-        elif (state == PaintState.STEP) and stepped:
-            seen.next = (seen + 1) % (1 << len(seen))
 
     # All channels are divided by 4 for each reflection of the scene.
     @always_comb

@@ -5,7 +5,7 @@ from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, tied, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.widths import AXIS_BITS, MIRROR_BITS, column_bits, eye_bits, weight_bits
 from raycaster.rtl.span.quarters_of import quarters_of
 from raycaster.rtl.span.records import Chain
@@ -133,7 +133,10 @@ def span_control(
             if state == SpanState.IDLE:
                 reflections.next = picture.reflections
 
-        judge = assign(leaf, lambda: gap or (level == reflections) or (mirrored == 0))
+        # Valid from SPAN on. A winner to which a level returns is a mirror, whose rectangle is only being fetched.
+        judge = register(
+            clk, leaf, lambda: (state != SpanState.RETURN) and (gap or (level == reflections) or (mirrored == 0))
+        )
         see_weight = assign(weight, lambda: chain.weight)
         see_own = assign(own, lambda: 4 if leaf else 4 - mirrored)
 

@@ -54,7 +54,7 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
     first_slope, step, answer = Vector(span_slope_bits(config)), Vector(step_bits(config)), Answer(config)
     chain, winner, heir, swept_heir, entry, tested = Chain(config), *(Entry(config) for _ in range(5))
     set_up_asks, sweep_asks, corner_asks = Asks(config), Asks(config), Asks(config, asks=mirrors, divides=False)
-    surface_asks = Asks(config, asks=config.patterns or config.light, divides=config.patterns)
+    surface_asks = Asks(config, asks=config.varied, divides=config.patterns)
     column, stop, swept_stop = (unsigned(width) for _ in range(3))
     begin_set_up, begin_sweep, begin_paint, begin_emit, fetch = (bit() for _ in range(5))
     set_up_done, sweep_done, emitted, painted = (bit() for _ in range(4))
@@ -109,7 +109,7 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
         cornered, corner_done = tied(0, 1), tied(0, 1)
         begin_corner, push, passed_on = unconnected(1), unconnected(1), unconnected(1)
 
-    if config.patterns or config.light:
+    if config.varied:
         go_on, stepped = bit(), bit()
         next_column = unsigned(width)
         looks = surfaces(

@@ -5,7 +5,7 @@ from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.signals import bit, tied, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.by_axis import along_a, by_axis
 from raycaster.rtl.common.widths import column_bits, level_bits
 from raycaster.rtl.span.records import Shadows, count_bits
@@ -31,7 +31,7 @@ def surface_light(
         paint: strobe, while idle; a surface is seen at this level.
         level: unsigned, `level_bits` bits; constant from paint to painted, like chain, winner, camera, column, stop.
         unseen: flag; it needs no light. Read with paint.
-        rect: `Rect` of the surface; position is read with paint.
+        rect: `Rect` of the surface; position is read in the cycle before paint, as are chain and winner.
         chain: `Chain` whose rays see it.
         winner: `Entry` of the surface.
         camera: `Camera`; only the light is read.
@@ -62,7 +62,7 @@ def surface_light(
     width, levels = column_bits(config), 1 << level_bits(config)
 
     state = Signal(LightState.IDLE)
-    entering, painting, needs, front, lit, unlit = (bit() for _ in range(6))
+    entering, painting, needs, front, in_front, lit, unlit = (bit() for _ in range(7))
     found, scanned, now_dark = bit(), bit(), bit()
     back_a, find, scan = bit(), bit(), bit()
     light_a = unsigned(COORDINATE_BITS)
@@ -78,11 +78,12 @@ def surface_light(
 
     # The eye is in front of the surface, on the side of the smaller coordinates unless the ray runs towards them.
     see_front = assign(front, lambda: light_a > rect.position if winner.back != back_a else light_a < rect.position)
+    keep_front = register(clk, in_front, lambda: front)
 
     @always_comb
     def see_light():
-        lit.next = paint and camera.light_on and front and not unseen
-        unlit.next = camera.light_on and not (front or unseen)
+        lit.next = paint and camera.light_on and in_front and not unseen
+        unlit.next = camera.light_on and not (in_front or unseen)
 
     begun = fresh.joined(dark=unlit, until=stop, count=no_shadows, stop=stop)
     counted = with_count.joined(dark=shadows.dark, until=shadows.until, count=entry_count, stop=shadows.stop)
@@ -109,7 +110,6 @@ def surface_light(
 
     @always_comb
     def see_end():
-        busy.next = state != LightState.IDLE
         painted.next = (paint and not lit) or (painting and scanned)
         stepped.next = step and (state == LightState.IDLE) and not needs
 
@@ -118,15 +118,19 @@ def surface_light(
         entering.next = lit or found or needs
         if reset:
             state.next = LightState.IDLE
+            busy.next = False
             entering.next = False
             painting.next = False
         elif lit:
             state.next = LightState.FIND
+            busy.next = True
             painting.next = True
         elif found or needs:
             state.next = LightState.SCAN
+            busy.next = True
         elif scanned:
             state.next = LightState.IDLE
+            busy.next = False
             painting.next = False
 
     finder = shadow_finder(

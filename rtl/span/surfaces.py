@@ -5,7 +5,7 @@ from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.records import Colour
 from raycaster.rtl.common.widths import KIND_BITS, RGB_BITS, column_bits
 from raycaster.rtl.engine.pattern_colour import pattern_colour
@@ -29,7 +29,8 @@ def surfaces(
 
     Args:
         reset: flag; synchronous reset to idle.
-        paint: strobe, while idle; from now on a ray sees this surface at this level.
+        paint: strobe, while idle; from now on a ray sees this surface at this level. share, gap, rect, chain and winner
+            are valid in the cycle before it, too.
         level: unsigned, `level_bits` bits; constant from paint to painted, like all inputs up to stop; rect only up to
             begin_set_up.
         share: unsigned, `weight_bits` bits; the surface's share in the picture.
@@ -77,7 +78,7 @@ def surfaces(
 
     table = surface_table(clk=clk, paint=paint, level=level, given=new, seen=seen, shown=surface, config=config)
 
-    see_need = assign(unseen, lambda: gap or (share == 0))
+    see_need = register(clk, unseen, lambda: gap or (share == 0))
 
     given = new.joined(share=share, colour=colour, kind=kind, colour_2=rect.colour_2)
     join = assign(new.word, lambda: given)

@@ -9,7 +9,7 @@ from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import column_bits, line_factor_bits
 from raycaster.rtl.span.records import NUMBER_BITS, Entry
 
-SweepState = enum("IDLE", "SCAN", "ORDER", "CROSS", "RIVAL")
+SweepState = enum("IDLE", "SCAN", "ORDER", "CROSS", "RIVAL", "NEXT")
 
 
 @block
@@ -24,7 +24,8 @@ def sweep(
     where N[j] e[i](c) - N[i] e[j](c) - (i > j) is not negative, which is a line. On the same axis that is the order
     of N and index, without a line. In a gap nothing is seen; it lasts to the next entry, which may begin at once.
 
-    An entry is compared with the winner in the cycle after it was read, and with the present stop in the next cycle.
+    An entry is compared with the winner and with the present stop in the cycle after it was read, and judged in the
+    next cycle. One that follows takes a cycle more, as it may change the stop.
 
     Args:
         reset: flag; synchronous reset to idle.
@@ -52,13 +53,13 @@ def sweep(
     rest, left_over = unsigned(len(count)), unsigned(len(count))
     # The entry that is compared with stop, and how it compares with the winner.
     present = Entry(config)
-    left, left_1, at, last, bound, bound_1, crossing, found_at = (unsigned(width) for _ in range(8))
-    ahead, opens, meets, nearer, same, outlasts, shortened = (bit() for _ in range(7))
+    left, left_1, at, last, bound, bound_1, crossing, found_at, first_stop, limit = (unsigned(width) for _ in range(10))
+    ahead, opens, in_time, meets, nearer, same, outlasts, shortened = (bit() for _ in range(8))
     tested_rank, winner_rank, present_rank, heir_rank = (
         unsigned(len(winner.distance) + len(winner.index)) for _ in range(4)
     )
-    opens_1, meets_1, nearer_1, same_1, outlasts_1 = (bit() for _ in range(5))
-    judging, in_time, soon, soon_after, sooner, found, here, ordered, changes, crosses = (bit() for _ in range(10))
+    in_time_1, meets_1, nearer_1, same_1, outlasts_1 = (bit() for _ in range(5))
+    judging, soon, soon_after, sooner, found, here, ordered, changes, crosses = (bit() for _ in range(9))
     take, settled, advance, rivalled, earlier, nearer_heir, same_heir, follows = (bit() for _ in range(8))
     rival = Entry(config)
     asked_left, asked_right, right = (unsigned(width) for _ in range(3))
@@ -88,6 +89,11 @@ def sweep(
     # An entry opens if it has not ended; in a gap, if it has not begun before.
     see_open = assign(opens, lambda: ahead if gap else (tested.index != winner.index) and (tested.stop > column))
 
+    # An entry that does not begin too late; it may also begin where the winner ends.
+    find_first_stop = assign(first_stop, lambda: chain_stop if gap else winner.stop)
+    find_limit = assign(limit, lambda: first_stop if begins else stop)
+    see_time = assign(in_time, lambda: opens and (tested.start <= limit))
+
     count_down = assign(left_over, lambda: count if begins else rest)
 
     @always(clk.posedge)
@@ -102,7 +108,7 @@ def sweep(
                 rest.next = left_over - 1
             present.word.next = tested.word
             left_1.next = left
-            opens_1.next = opens
+            in_time_1.next = in_time
             meets_1.next = meets
             nearer_1.next = nearer
             same_1.next = same
@@ -111,11 +117,9 @@ def sweep(
     # Where the entry would come first: where both are met, or after a division at the crossing.
     find_place = assign(at, lambda: crossing if state == SweepState.CROSS else left_1)
 
-    # An entry that does not begin too late; it may also begin where the winner ends.
     @always_comb
-    def see_time():
+    def see_soon():
         judging.next = (state == SweepState.SCAN) and held
-        in_time.next = opens_1 and (left_1 <= stop)
         soon.next = left_1 < stop
         soon_after.next = crossing < stop
         follows.next = outlasts_1 and not shortened
@@ -141,13 +145,13 @@ def sweep(
         ordered.next = False
         if judging:
             if gap or not meets_1:
-                found.next = in_time
+                found.next = in_time_1
                 here.next = True
             elif same_1:
-                found.next = in_time and (nearer_1 or follows)
+                found.next = in_time_1 and (nearer_1 or follows)
                 here.next = nearer_1
             else:
-                ordered.next = in_time
+                ordered.next = in_time_1
         elif (state == SweepState.ORDER) and answer.valid:
             here.next = answer.left >= 0
             found.next = (answer.left >= 0) or ((answer.right < 0) and follows)
@@ -185,14 +189,14 @@ def sweep(
         settled.next = False
         if state == SweepState.SCAN:
             settled.next = held and not ordered
-        elif state == SweepState.CROSS:
-            settled.next = crossed
+        elif state == SweepState.NEXT:
+            settled.next = True
         elif state != SweepState.IDLE:
             settled.next = answer.valid
 
     @always_comb
     def see_advance():
-        advance.next = settled and not (rivalled or crosses)
+        advance.next = settled and not (found or crosses)
         done.next = (state == SweepState.SCAN) and (rest == 0) and not (held or begins)
 
     fetch = assign(read, lambda: start or begins or advance)
@@ -208,6 +212,8 @@ def sweep(
             state.next = SweepState.IDLE
         elif rivalled:
             state.next = SweepState.RIVAL
+        elif found:
+            state.next = SweepState.NEXT
         elif ordered:
             state.next = SweepState.ORDER
         elif crosses:
@@ -226,10 +232,8 @@ def sweep(
         if begins:
             inherited.next = False
             shortened.next = False
-            stop.next = winner.stop
+            stop.next = first_stop
             bound.next = bound_1
-            if gap:
-                stop.next = chain_stop
         elif take:
             inherited.next = True
             heir.word.next = present.word

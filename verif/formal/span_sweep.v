@@ -118,6 +118,7 @@ always @* if (runs) assume (!start);
 
 // Questions and answers.
 wire scan = dut.state == 1, order = dut.state == 2, cross = dut.state == 3, rivals = dut.state == 4;
+wire next = dut.state == 5;
 reg asked, divides;
 reg [1:0] rival;
 reg [C-1:0] left, right;
@@ -154,8 +155,8 @@ always @* begin
     end
 end
 
-// What holds after the entries below `passed`, and for the present one.
-wire [2:0] entries_left = dut.rest + dut.held;
+// What holds after the entries below `passed`, and for the present one, if it is not among them.
+wire [2:0] entries_left = dut.rest + (dut.held && !next);
 wire [1:0] passed = count - entries_left;
 wire [C-1:0] winner_end = gap ? chain_stop : first_seen[C-1:0];
 wire begun = runs && !dut.begins;
@@ -164,7 +165,7 @@ wire [C-1:0] start_now = present_entry[C +: C], end_now = present_entry[C-1:0];
 wire [C-1:0] first_now = start_now > column ? start_now : column;
 wire [1:0] axis_now = present_entry[E-3 -: 2], winner_axis = winner_word[E-3 -: 2];
 always @* if (known) begin
-    assert (dut.state <= 4 && runs == (dut.state != 0) && (runs || place == 0));
+    assert (dut.state <= 5 && runs == (dut.state != 0) && (runs || place == 0));
     assert (!dut.begins || (scan && !dut.held));
     assert ((runs || !dut.held) && (asked || dut.asks_rival) == (order || rivals) && !(asked && dut.asks_rival));
     assert (cross ? divides != dut.crossed : !divides);
@@ -173,10 +174,12 @@ always @* if (known) begin
     if (dut.begins) assert (tested == 0);
     if (begun) begin
         assert (entries_left <= count && (dut.held || (scan && dut.rest == 0)));
-        if (dut.held) begin
+        if (next) assert (dut.held && tested == passed);
+        if (dut.held && !next) begin
             assert (present == passed && tested == passed + 2'd1 && dut.present_word == present_entry);
             assert (dut.left_1 == first_now && dut.same_1 == (axis_now == winner_axis));
-            assert (dut.opens_1 == (gap ? start_now >= column : present != seen && end_now > column));
+            assert (dut.in_time_1 == (start_now <= stop && (gap ? start_now >= column
+                : present != seen && end_now > column)));
             if (!gap) begin
                 assert (dut.meets_1 == (start_now < winner_end) && dut.outlasts_1 == (end_now > winner_end));
                 assert (dut.nearer_1 == ({present_entry[2*C +: N], present_entry[E-1 -: 2]}
@@ -219,10 +222,11 @@ endgenerate
 
 // Every pass ends: after an answer there is a question that has not been asked of this entry, or another entry.
 always @* if (known && $past(known) && $past(begun) && begun) begin
-    if (scan) assert (entries_left < $past(entries_left));
-    if ($past(order)) assert (order || cross || rivals || scan);
+    if (next || (scan && !$past(next))) assert (entries_left < $past(entries_left));
+    if ($past(order)) assert (order || cross || rivals || next || scan);
     if ($past(rivals)) assert (rivals || scan);
-    if ($past(cross)) assert (cross || rivals || scan);
+    if ($past(cross)) assert (cross || rivals || next);
+    if ($past(next)) assert (scan);
 end
 
 // Covers two that follow at the same column, and a crossing.

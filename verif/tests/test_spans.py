@@ -31,7 +31,7 @@ SCENES = {name: load_scene(path) for name, path in sorted(packaged_scenes().item
 
 def check(frame: Frame, screen: Screen) -> None:
     """Compare a frame's picture with the one of the golden model."""
-    rows = list(frame.model(screen).rows(screen, frame.basis))
+    rows = list(frame.rows(screen))
     for row in rows:
         ends = [0, *(end for end, _ in row.runs)]
         assert ends == sorted(set(ends)), "a run is empty"

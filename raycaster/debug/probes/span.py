@@ -344,8 +344,9 @@ class SpanProbes(Description):
             if now["painter.run_valid"] and not series["painter.run_valid"][cycle - 1]:
                 end = now["painter.run_end"]
                 if sight.sees(begin, end):
-                    # Each level was summed in a cycle before, and the sum went into the register.
-                    levels = enumerate(sight.surfaces, cycle - 1 - len(sight.surfaces))
+                    # Each level was read in a cycle before, and the sum of all went into the register.
+                    first = cycle - 1 - len(sight.surfaces) - self.config.varied
+                    levels = enumerate(sight.surfaces, first)
                     events += [Event("seen", at, Place(i), values) for i, (at, values) in enumerate(levels)]
                     events.append(Event("mixed", cycle, Place(sight.last), sight.mixed))
                 begin = end

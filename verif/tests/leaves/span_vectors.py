@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,7 +14,7 @@ from vectors import LAST, any_config, basis_inputs, by_axis, colour_word, named
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.exact import ExactModel
-from raycaster.golden.spans import Chain, Line, SpanModel
+from raycaster.golden.spans import Chain, Line, Row, SpanModel
 from raycaster.golden.spans import row_slope as golden_slope
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.hdl.signals import bit, tied, unconnected, unsigned
@@ -259,9 +259,11 @@ class Frame:
     basis: Basis = UNTURNED
     light: Light | None = None
 
-    def model(self, screen: Screen) -> SpanModel:
-        """Return the model of the unit that draws the frame."""
-        return SpanModel(self.table, self.camera, self.background, screen.columns, self.reflections, self.light)
+    def rows(self, screen: Screen, varied: bool = False) -> Iterator[Row]:
+        """Yield the rows that a unit draws, by its model; varied as in `SpanModel`."""
+        return SpanModel(
+            self.table, self.camera, self.background, screen.columns, self.reflections, self.light, varied
+        ).rows(screen, self.basis)  # fmt: skip
 
     def picture(self, screen: Screen) -> np.ndarray:
         """Return the picture, from the golden model that traces single rays."""

@@ -54,6 +54,8 @@ def test_painter(patterns, reflections, leaf_of, random):
                 sum(share * colour[channel] for share, colour in zip(shares, colours, strict=True)) // 4**fewer
                 for channel in range(3)
             )
+            if patterns:
+                cycle({})
             while not cycle({}, {"place": place}, {"run_end": place, "run_colour": int.from_bytes(mixed)}):
                 pass
             for number in range(level + 1 if place < stop else 0):

@@ -100,7 +100,8 @@ def test_surface_light(leaf_of, random):
         front = light[axis] > plane if back != flipped else light[axis] < plane
         lit = bool(shining and front and not unseen)
         dark, until, shadows = bool(shining and not front and not unseen), stop, []
-        leaf.case(inputs | {"reset": 0, "paint": 1, "column": column, "stop": stop, "seen": level})
+        leaf.case(inputs | {"reset": 0})
+        leaf.case({"paint": 1, "column": column, "stop": stop, "seen": level})
         leaf.expect({"painted": int(not lit), "busy": 0})
         if lit:
             leaf.stimulus += [{"paint": 0}, *[{}] * (ANSWER + 1)]
