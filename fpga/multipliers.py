@@ -62,7 +62,7 @@ def _register_products(module: Mapping[str, Any]) -> int:
 
 
 def _register_factors(
-    multipliers: Sequence[dict[str, Any]], cells: dict[str, Any], registers: Mapping[int, str],
+    multipliers: Sequence[dict[str, Any]], cells: dict[str, Any], registers: Mapping[int | str, str],
     readers: Mapping[int | str, Sequence[tuple[str, str]]],
 ) -> None:  # fmt: skip
     """Move the registers of whole factors; those that others read as well stay, too.
