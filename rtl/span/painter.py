@@ -112,7 +112,9 @@ def painter(
         if reset:
             seen.next = 0
         elif (state == PaintState.SUM) or ((state == PaintState.STEP) and stepped):
-            seen.next = 0 if last else (seen + 1) % (1 << len(seen))
+            seen.next = (seen + 1) % (1 << len(seen))
+            if last:
+                seen.next = 0
         if reset or offers:
             red.next = 0
             green.next = 0
