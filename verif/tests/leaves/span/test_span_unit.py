@@ -260,7 +260,7 @@ def test_a_planted_fault_is_noticed(module, right, wrong, leaf_of, random):
     [path] = [path for path in leaf.verilog if path.stem == module]
     plant(path, right, wrong)
     with pytest.raises(AssertionError):
-        for number in range(30):
+        for number in range(200):
             frame = any_frame(random, config)
             check_frames(leaf, [in_planes(random, frame) if number % 2 else frame])
 
