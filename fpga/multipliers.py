@@ -13,10 +13,10 @@ MULTIPLIER, REGISTER, FACTOR_BITS = "MULT18X18D", "TRELLIS_FF", 18
 
 
 def register_products(netlist: Path) -> int:
-    """Use a multiplier's own registers in place of those without enable or reset in the fabric.
+    """Move registers that have neither enable nor reset from the fabric into the multipliers beside them.
 
-    That is the output register if only a register reads the product, and otherwise, as for a part of a long product
-    that is still to be added, the input register of each factor that comes from one. Yosys does not infer these
+    A product that only a register reads goes into the output register. Otherwise, as with a part of a long product that
+    is still to be added, each factor that comes from a register goes into an input register. Yosys does not infer these
     registers; nextpnr knows their timing. The path from the registers of the factors to that of the product then
     crosses the fabric once instead of twice.
 
@@ -43,7 +43,7 @@ def _register_products(module: Mapping[str, Any]) -> int:
         for net in port["bits"]:
             readers[net].append(("", ""))
     plain = {name for name, cell in cells.items() if cell["type"] == REGISTER and _is_plain(cell)}
-    registered, added = 0, []
+    registered, others = 0, []
     for multiplier in [cell for cell in cells.values() if cell["type"] == MULTIPLIER]:
         product = {port: readers[net] for port, net in _nets(multiplier, "output") if readers[net]}
         read = [reader for those in product.values() for reader in those]
@@ -56,8 +56,8 @@ def _register_products(module: Mapping[str, Any]) -> int:
             connect_register(multiplier, clocks.pop())
             registered += 1
         else:
-            added.append(multiplier)
-    _register_factors(added, cells, {cells[name]["connections"]["Q"][0]: name for name in plain}, readers)
+            others.append(multiplier)
+    _register_factors(others, cells, {cells[name]["connections"]["Q"][0]: name for name in plain}, readers)
     return registered
 
 

@@ -147,7 +147,8 @@ module cells (
     wire signed [18:0] shared = x * (y + 9'sd3), again_too = (x + 10'sd3) * y;
     reg signed [18:0] again;
 
-    // Products of more than one multiplier; the factors of `long` come from plain registers, one of which is read twice.
+    // Each of these products takes several multipliers. Only `long` has both factors from plain registers; `left` is also
+    // read elsewhere.
     reg signed [23:0] left, left_rare;
     reg signed [19:0] right, right_fresh;
 
