@@ -162,6 +162,7 @@ def half_lines(
         passes.next = at_hand and (take or not weighed)
         fetch.next = offered and (seeing or walking) and ((not at_hand) or take or not weighed)
 
+    # The first rectangle is chosen in the cycle after start, which comes late in its own cycle.
     @always_comb
     def show_fetch():
         moving.next = fetch or (seeing and asked_axis == 0)

@@ -99,6 +99,7 @@ def list_player(
             head_0=heads[0], head_1=heads[1], take_0=take_even, take_1=take_odd, left=left, right=right,
         )  # fmt: skip
 
+        # Whether the present entry is an odd one, which place tells a cycle later.
         @always(clk.posedge)
         def follow():
             if restart:
