@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import errno
-from collections.abc import Iterable, Sequence
+import time
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import serial
@@ -26,6 +27,9 @@ PATIENCE = 0.3
 
 ATTEMPTS = 3
 """Number of times that a frame is sent before the board is said not to answer."""
+
+SHOWN = 3.0
+"""Seconds within which a new scene must be drawn."""
 
 
 class Board:
@@ -50,6 +54,7 @@ class Board:
             raise UserError(f"port: {port}: {_reason(error)}") from None
         self._decoder = FrameDecoder()
         self.config = self._identified()
+        self._registers = register_map(*self.config.map)
 
     def request(self, words: Sequence[int]) -> list[int]:
         """Send a frame, and return the words that it reads.
@@ -63,8 +68,8 @@ class Board:
         try:
             for _ in range(ATTEMPTS):
                 self._line.write(data)
-                left = round((PATIENCE + 10 * (len(data) + 8 * length + 20) / self._baud) / 0.01)
-                for _ in range(left):
+                end = time.monotonic() + PATIENCE + 10 * (len(data) + 8 * length + 20) / self._baud
+                while time.monotonic() < end:
                     for answer in self._decoder.feed(self._line.read(max(1, self._line.in_waiting))):
                         if answer[:1] == [first] and len(answer) == length:
                             return answer[1:]
@@ -78,10 +83,14 @@ class Board:
     def _identified(self) -> Configuration:
         registers = register_map(1)
         words = self.request(access(0, read=registers["table"].address + 1))
-        known = {name: registers[name].unpack(words[registers[name].address]) for name in ("engine", "size", "table")}
+        known = {
+            name: registers[name].unpack(words[registers[name].address])
+            for name in ("id", "version", "engine", "size", "table")
+        }
         engine = known["engine"]
         names = [name for name, each in ENGINES.items() if each.facts.code == engine["engine"]]
-        if words[registers["id"].address] != registers["id"].reset or not names:
+        right = {"id": "magic", "version": "major"}
+        if not names or any(known[name][field] != registers[name].fields[field].reset for name, field in right.items()):
             raise UserError(f"port: what answers on {self.port} is no ray tracer of this version")
         if engine["fixed"]:
             raise UserError(
@@ -108,11 +117,53 @@ class Board:
                 f"{path}: needs {FEATURES[feature]}, which the design on {self.port} lacks; build it with "
                 f"{as_typed(feature, 1)}"
             )
+        if scene.reflections > self.config.most_reflections:
+            raise UserError(
+                f"{path}: reflections: {scene.reflections}, but the design on {self.port} computes at most "
+                f"{self.config.most_reflections}; build it with {as_typed('reflections', scene.reflections)}"
+            )
         return scene
 
     def write(self, pairs: Iterable[tuple[int, int]]) -> None:
         """Write words to word addresses, in one frame; the last pair commits."""
         self.request(writes(pairs))
+
+    def read(self, name: str) -> dict[str, int]:
+        """Read a register, and return its fields."""
+        register = self._registers[name]
+        return register.unpack(self.request(access(register.address, read=1))[0])
+
+    def show(self, pairs: Iterable[tuple[int, int]]) -> None:
+        """Write the words of a scene; wait until a frame of it is drawn, if the design draws whole frames.
+
+        Raises:
+            UserError: no frame of it is drawn, so the board shows what it showed before.
+        """
+        self.write(pairs)
+        if not self.config.facts.whole_frames:
+            return
+        self._wait(lambda: not self.read("control")["commit"])
+        # A frame of the scene before may have set it.
+        status = self._registers["frames.status"]
+        self.write([(status.address, status.pack(list_full=1))])
+        drawn = self.read("frames.counts")["drawn"]
+        self._wait(lambda: self._abandons() or self.read("frames.counts")["drawn"] != drawn)
+        if self._abandons():
+            raise UserError(
+                f"port: a frame of this scene has more runs than the list of the design on {self.port}, which still "
+                f"shows the scene before; build it with a longer {as_typed('list')}, see `raycaster scenes`"
+            )
+
+    def _abandons(self) -> bool:
+        return bool(self.read("frames.status")["list_full"])
+
+    def _wait(self, holds: Callable[[], bool]) -> None:
+        end = time.monotonic() + SHOWN
+        while not holds():
+            if time.monotonic() > end:
+                raise UserError(
+                    f"port: the scene was sent, but the design on {self.port} has drawn no frame for {SHOWN:.0f} s"
+                )
 
 
 def _reason(error: Exception) -> str:

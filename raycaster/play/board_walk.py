@@ -6,8 +6,6 @@ from __future__ import annotations
 import os
 import select
 import sys
-import termios
-import tty
 from collections.abc import Iterator, Sequence
 
 from raycaster.design.options import CommandParser, add_scene_argument
@@ -16,6 +14,12 @@ from raycaster.output import Console
 from raycaster.play.board import Board, add_port_options
 from raycaster.play.walk import Walker
 from raycaster.scene import find_scene
+
+try:
+    import termios
+    import tty
+except ImportError:  # Windows
+    termios = tty = None
 
 KEYS = {
     "w": "forward", "s": "back", "a": "left", "d": "right", "r": "rise", "f": "sink",
@@ -48,11 +52,13 @@ def command_parser() -> CommandParser:
 def main(argv: Sequence[str] | None = None) -> None:
     """Run the command."""
     arguments = command_parser().parse_args(argv)
+    if termios is None or tty is None:
+        raise UserError("walk: needs a terminal of Linux or macOS; `raycaster send` works here")
     if not sys.stdin.isatty():
         raise UserError("walk: takes keys from a terminal; run it in one")
     board = Board(arguments.port, arguments.rate)
     walker = Walker(board.scene(arguments.scene), board.config)
-    board.write(walker.load())
+    board.show(walker.load())
     Console().print(HELP)
     before = termios.tcgetattr(sys.stdin)
     try:

@@ -25,7 +25,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     arguments = command_parser().parse_args(argv)
     board = Board(arguments.port, arguments.rate)
     scene = board.scene(arguments.scene)
-    board.write(scene_words(scene, board.config))
+    board.show(scene_words(scene, board.config))
     held = board.config.rectangles
     Console().print(
         f"{arguments.scene}: sent, {len(scene.rect)} of at most {held} rectangles, {board.config.engine} engine",

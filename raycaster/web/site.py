@@ -37,7 +37,7 @@ from raycaster.registers import register_map
 from raycaster.rtl.engines import ENGINES, SEED, SPAN
 from raycaster.runs.jobs import processes, run_jobs
 from raycaster.runs.outcomes import RESULTS, kept_outcome
-from raycaster.scene import COMPLAINTS, PATTERN_KEYS, PATTERNS, Scene, load_scene, packaged_scenes
+from raycaster.scene import CELLS, COMPLAINTS, PATTERN_KEYS, PATTERNS, Scene, load_scene, packaged_scenes
 from raycaster.screens import LIST_SCREENS, SCREENS
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
@@ -132,7 +132,7 @@ def scene_schema() -> dict[str, object]:
     `model` is the JSON schema of `Scene`: tables, their keys in order, defaults, and the `checks` of each value in the
     order in which they are applied. `complaints` are the other messages, with placeholders in braces. `longest_shown`
     is in characters, and `most_rectangles` is the limit of any hardware. `patterns` are in the order of the register
-    codes, and `pattern_keys` are the keys that only a pattern has.
+    codes, `cells` are the sizes of their cells, and `pattern_keys` are the keys that only a pattern has.
     """
     return {
         "model": Scene.model_json_schema(),
@@ -140,6 +140,7 @@ def scene_schema() -> dict[str, object]:
         "longest_shown": LONGEST_SHOWN,
         "most_rectangles": MOST_RECTANGLES,
         "patterns": list(PATTERNS),
+        "cells": list(CELLS),
         "pattern_keys": list(PATTERN_KEYS),
     }
 
@@ -225,16 +226,24 @@ def _cost(path: Path = RESULTS / "features.json") -> dict[str, Any] | None:
 
 
 def _board() -> dict[str, Any]:
-    """Return what the page needs to send a scene to a board: registers, engines by code, and the usual rate."""
+    """Return what the page needs to send a scene to a board.
+
+    That is registers, engines by code and those that draw whole frames, and the usual rate.
+    """
+    known = register_map(1, lists=True)
     registers = {
         name: {
             "address": register.address,
             "fields": {key: [one.lsb, one.width] for key, one in register.fields.items()},
         }
-        for name, register in register_map(1).items()
+        for name, register in known.items()
     }
     engines = {engine.facts.code: name for name, engine in ENGINES.items()}
-    return {"registers": registers, "engines": engines, "id": register_map(1)["id"].reset, "baud": USUAL_BAUD}
+    draws = [name for name, engine in ENGINES.items() if engine.facts.whole_frames]
+    return {
+        "registers": registers, "engines": engines, "draws": draws, "baud": USUAL_BAUD,
+        "id": known["id"].reset, "major": known["version"].fields["major"].reset,
+    }  # fmt: skip
 
 
 def write_site(

@@ -7,14 +7,16 @@ import os
 import pty
 import re
 import threading
+import time
 import tty
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
 import pytest
 from conftest import SMALL_SCENE, refused
 
+from raycaster.buses import USUAL_BAUD
 from raycaster.configuration import Configuration
 from raycaster.design.decide import configure
 from raycaster.errors import UserError
@@ -40,17 +42,28 @@ class Device:
         port: name of the serial port.
         written: words and their addresses in the order of writing.
         deaf: number of frames that are dropped.
+        baud: bits per second, if bytes take their time on the line.
         heard: all bytes that came.
+        draws: what a read of the registers finds of frames; by default, one more was drawn each time.
     """
 
-    def __init__(self, config: Configuration, deaf: int = 0):
+    def __init__(
+        self,
+        config: Configuration,
+        deaf: int = 0,
+        draws: Mapping[str, Mapping[str, int]] | None = None,
+        baud: float = float("inf"),
+    ):
         self._end, other = pty.openpty()
         tty.setraw(other)
         self.port, self.written, self.deaf, self.heard = os.ttyname(other), [], deaf, bytearray()
+        self._byte_time = 10 / baud
         registers = register_map(*config.map)
         words = {"id": registers["id"].reset, "version": version_word(config), "engine": engine_word(config),
                  "size": size_word(config), "table": table_word(config)}  # fmt: skip
+        words |= {name: registers[name].pack(**fields) for name, fields in (draws or {}).items()}
         self._words = {registers[name].address: word for name, word in words.items()}
+        self._counts = registers["frames.counts"].address if draws is None and config.facts.whole_frames else None
         threading.Thread(target=self._serve, daemon=True).start()
 
     def _serve(self) -> None:
@@ -58,12 +71,15 @@ class Device:
         while True:
             data = os.read(self._end, 256)
             self.heard += data
+            time.sleep(self._byte_time * len(data))
             for words in decoder.feed(data):
                 self.deaf -= 1
                 if self.deaf < 0:
                     # Half an answer to someone else comes first, and a whole one.
                     answer = self._carried_out(words)
-                    os.write(self._end, framed([7, 8])[:6] + framed([7] * len(answer)) + framed(answer))
+                    for byte in framed([7, 8])[:6] + framed([7] * len(answer)) + framed(answer):
+                        os.write(self._end, bytes([byte]))
+                        time.sleep(self._byte_time)
 
     def _carried_out(self, words: list[int]) -> list[int]:
         at = 0
@@ -71,6 +87,8 @@ class Device:
             first, at = words[at], at + 1
             address, count = first & 0xFFFF, first >> 16 & 0x3FF
             if not first >> 31:
+                if self._counts is not None:
+                    self._words[self._counts] = self._words.get(self._counts, 0) + 1
                 return [first, *(self._words.get(address + number, 0) for number in range(count))]
             for number in range(count):
                 self.written.append((address + number, words[at + number]))
@@ -113,13 +131,17 @@ def test_a_room_is_a_frame():
         assert found[-1] == pairs[-1]
 
 
-@pytest.mark.parametrize(("config", "deaf"), [(SPAN, 0), (LARGE, 2)])
-def test_send(capsys, config, deaf):
-    """All words of a room are written; a frame that is not answered is sent again."""
-    device = Device(config, deaf)
+@pytest.mark.parametrize(("config", "deaf", "baud"), [(SPAN, 0, 2400), (LARGE, 2, USUAL_BAUD)])
+def test_send(capsys, config, deaf, baud):
+    """All words of a room are written, also over a slow line; a frame that is not answered is sent again."""
+    device = Device(config, deaf, baud=baud)
     path = find_scene("lamplight")
-    send.main([str(path), "--port", device.port])
-    assert sorted(device.written) == sorted(scene_words(load_scene(path), config))
+    send.main([str(path), "--port", device.port, "--baud", str(baud)])
+    status = register_map(*config.map)["frames.status"]
+    assert device.written.pop() == (status.address, status.pack(list_full=1)), "from the scene before"
+    words = scene_words(load_scene(path), config)
+    assert sorted(device.written) == sorted(words)
+    assert deaf or device.heard.count(framed(writes(words))) == 1, "the time on the line was waited for"
     assert 2 * device.heard.count(bytes([LEAD, FLAG])) == device.heard.count(FLAG)
     assert re.search(
         rf"lamplight\.toml: sent, \d+ of at most {config.rectangles} rectangles, span engine\n", capsys.readouterr().out
@@ -139,14 +161,16 @@ def typed(text: str, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 def test_walk(monkeypatch, capsys):
-    """Each key moves the camera; a camera that cannot turn ignores the arrows."""
+    """Each key moves the camera as on a VT100, whose arrows are A up, B down, C right and D left."""
     device, path = Device(SPAN), find_scene("lamplight")
-    with typed("wwd\x1b[Cxq", monkeypatch):
+    # Twice as often to one side as to the other, so that no two keys can be exchanged.
+    with typed("wwwsddarrf\x1b[A\x1b[A\x1b[B\x1b[C\x1b[C\x1b[Dxq", monkeypatch):
         board_walk.main([str(path), "--port", device.port])
     walker = Walker(load_scene(path), SPAN)
     expected = sorted(walker.load())
     assert sorted(device.written[: len(expected)]) == expected
-    for held in ("forward", "forward", "right", "turn right"):
+    walked = ("forward", "forward", "forward", "back", "right", "right", "left", "rise", "rise", "sink")
+    for held in (*walked, "look up", "look up", "look down", "turn right", "turn right", "turn left"):
         walker.move({held})
     last = writes(walker.writes())
     assert [word for _, word in device.written[-len(walker.writes()) :]] == [
@@ -174,9 +198,22 @@ def refuses(config: Configuration, scene: str, *, words: tuple[str, ...] = ()) -
 def test_a_room_that_does_not_fit():
     few = configure(engine="span", rectangles=2, bus="uart")
     assert "rectangles, but the hardware holds 2" in refuses(few, "boxes")
+    assert re.search(r"reflections: 2, but the design on /dev/\S+ computes at most 1; build it with --reflections 2\n$",
+                     refuses(configure(engine="span", reflections=1), "facing_mirrors"))  # fmt: skip
     plain = configure(engine="span", rectangles=32, turn=True, materials=True, patterns=True)
     assert re.search(r"needs a light, which the design on /dev/\S+ lacks; build it with --light 1\n$",
                      refuses(plain, "evening"))  # fmt: skip
+
+
+def test_a_room_that_is_not_drawn(monkeypatch):
+    """What the board shows then is not the room that was sent."""
+    monkeypatch.setattr("raycaster.play.board.SHOWN", 0.1)
+    for draws, said in (
+        ({"frames.status": {"list_full": 1}}, "has more runs than the list of the design on "),
+        ({"frames.status": {"late": 1}}, "has drawn no frame for "),
+        ({"control": {"commit": 1}}, "has drawn no frame for "),
+    ):
+        assert said in refused(send.main, "boxes", "--port", Device(SPAN, draws=draws).port)
 
 
 def test_no_board(monkeypatch, tmp_path):
@@ -191,9 +228,13 @@ def test_no_board(monkeypatch, tmp_path):
     device, engine = Device(SPAN), register_map(1)["engine"]
     device._words[engine.address] |= engine.fields["fixed"].mask
     assert "has its scene built in; make it without " in refused(send.main, "boxes", "--port", device.port)
-    device._words[0] = 1
-    assert "is no ray tracer of this version" in refused(send.main, "boxes", "--port", device.port)
+    for register, word in (("id", 1), ("version", 2 << 16)):
+        other = Device(SPAN)
+        other._words[register_map(1)[register].address] = word
+        assert "is no ray tracer of this version" in refused(send.main, "boxes", "--port", other.port)
     assert "walk: takes keys from a terminal" in refused(board_walk.main, "boxes", "--port", "loop://")
+    monkeypatch.setattr("raycaster.play.board_walk.termios", None)
+    assert "walk: needs a terminal of Linux or macOS" in refused(board_walk.main, "boxes", "--port", "loop://")
 
 
 def test_no_permission(monkeypatch):

@@ -18,7 +18,7 @@ from raycaster.fpga.area import ROOM_DESIGNS
 from raycaster.golden.frames import scene_cycles
 from raycaster.program import scene_words
 from raycaster.registers import register_map
-from raycaster.rtl.bus.avalon_interface import engine_word, size_word, table_word
+from raycaster.rtl.bus.avalon_interface import engine_word, size_word, table_word, version_word
 from raycaster.runs.outcomes import RESULTS
 from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.serial_frames import LEAD, access, framed, writes
@@ -125,6 +125,7 @@ def test_rectangles_come_and_go(room):
     room.click("#room-add")
     room.select_option("#room-mirror", "0.75")
     room.select_option("#room-pattern", "rows")
+    room.select_option("#room-cell", "256")
     room.fill("#room-colour", "#123456")
     room.fill("#room-corner-0-z", "40")
     room.fill("#room-label", 'a "shelf"')
@@ -204,13 +205,14 @@ def test_a_click_finds_the_line(room):
 
 
 def test_keys_walk(room):
-    """After a click on a scene, and with a menu chosen, letters walk; in the text they are letters."""
+    """After a click on a scene, and with a menu or a colour chosen, letters walk; in the text they are letters."""
     start = choose(room, "boxes") and scene_of(text_of(room)).camera.position
     room.select_option("#room-grid", "16")
-    room.focus("#room-grid")
-    room.keyboard.down("w")
-    room.wait_for_function(f"RayCaster.state.room.camera.position[0] > {start[0] + 20}")
-    room.keyboard.up("w")
+    for far, field in ((20, "#room-grid"), (40, "#room-background")):
+        room.focus(field)
+        room.keyboard.down("w")
+        room.wait_for_function(f"RayCaster.state.room.camera.position[0] > {start[0] + far}")
+        room.keyboard.up("w")
     assert room.input_value("#room-grid") == "16"
     room.click("#room-camera")
     copied = room.evaluate("RayCaster.state.room.camera.position")
@@ -335,15 +337,35 @@ def test_send_to_board(room):
     def described(config: Configuration, **known: int) -> bytes:
         """Return what a design says of itself."""
         words = {"id": registers["id"].reset, "engine": engine_word(config), "size": size_word(config)}
-        words |= {"table": table_word(config)} | known
+        words |= {"version": version_word(config), "table": table_word(config)} | known
         by_address = {registers[name].address: word for name, word in words.items()}
         return framed([*asked, *(by_address.get(address, 0) for address in range(registers["table"].address + 1))])
 
-    written = access(registers["control"].address, [0])[:1]
+    written, cleared = (framed(access(registers[name].address, [0])[:1]) for name in ("control", "frames.status"))
+
+    def found(name: str, **fields: int) -> bytes:
+        """Return the answer to a read of a register."""
+        return framed([*access(registers[name].address, read=1), registers[name].pack(**fields)])
+
+    full = framed(access(registers["frames.status"].address, [registers["frames.status"].pack(list_full=1)]))
     fixed = engine_word(BOARD) | registers["engine"].fields["fixed"].mask
+    live = [written, found("control", commit=1), found("control"), cleared, found("frames.counts", drawn=7)]
+    none, drawn = [found("frames.status"), found("frames.counts", drawn=7)], found("frames.counts", drawn=8)
     for answers, said in (
-        ([described(BOARD), framed(written)], "The board shows this room, with the span engine."),
-        ([described(BOARD, id=1)], "Not sent: what answers is no ray tracer"),
+        (
+            [described(BOARD), *live, *none, found("frames.status"), drawn, found("frames.status")],
+            "The board shows this room, with the span engine.",
+        ),
+        (
+            [described(BOARD), *live, *none, *[found("frames.status", list_full=1)] * 2],
+            "Not sent: a frame of it has more runs than the board's list; build it with a longer LIST",
+        ),
+        (
+            [described(configure(engine="exact", turn=True, light=True, materials=True, patterns=True)), written],
+            "The board shows this room, with the exact engine.",
+        ),
+        ([described(BOARD, id=1)], "Not sent: what answers is no ray tracer of this version"),
+        ([described(BOARD, version=2 << 16)], "Not sent: what answers is no ray tracer of this version"),
         ([described(BOARD, engine=fixed)], "Not sent: the design has a scene built in"),
         (
             [described(replace(BOARD, rectangles=2))],
@@ -353,6 +375,10 @@ def test_send_to_board(room):
             [described(replace(BOARD, light=False))],
             "Not sent: the board's design has no light; build it with LIGHT=1",
         ),
+        (
+            [described(replace(BOARD, reflections=0))],
+            "Not sent: the room has 1 reflection, but the board's design computes at most 0",
+        ),
         ([], "Not sent: no answer at 1000000 baud"),
     ):
         room.evaluate(PORT, [[list(one) for one in answers]])
@@ -361,5 +387,7 @@ def test_send_to_board(room):
         room.wait_for_function(f"find('room-said').textContent === {said!r}")
         frames, rate = room.evaluate("[window.sentToBoard, window.boardRate]")
         question = [LEAD, *framed(asked)]
-        assert frames == ([question] * 3, [question], [question, room_bytes(scene, BOARD)])[len(answers)]
+        assert frames[:2] == ([question] * 2, [question], [question, room_bytes(scene, BOARD)])[min(len(answers), 2)]
+        assert len(frames) == max(3 * (not answers), len(answers))
+        assert len(frames) < 5 or frames[4] == [LEAD, *full]
         assert rate == 0, "the port is open"

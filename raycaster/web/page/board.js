@@ -6,6 +6,7 @@
 const RayCasterBoard = (() => {
   const FLAG = 0x7e, ESCAPE = 0x7d, ESCAPED = 0x20, LEAD = 0xff;
   const PATIENCE = 500, ATTEMPTS = 3; // ms for an answer, and frames that are sent for one
+  const SHOWN = 3000; // ms within which a new scene must be drawn
 
   function check(bytes) {
     let crc = 0xffffffff;
@@ -93,9 +94,30 @@ const RayCasterBoard = (() => {
   function designOf(words) {
     const { board } = RayCaster, of = (name) => unpack(name, words[register(name).address]);
     const engine = of("engine"), name = board.engines[engine.engine];
-    if (words[register("id").address] !== board.id || !name) throw new Error("what answers is no ray tracer");
+    if (of("id").magic !== board.id || of("version").major !== board.major || !name)
+      throw new Error("what answers is no ray tracer of this version");
     if (engine.fixed) throw new Error("the design has a scene built in");
-    return { ...engine, name, rectangles: of("table").rectangles || of("size").rectangles };
+    const rectangles = of("table").rectangles || of("size").rectangles;
+    return { ...engine, name, rectangles, draws: board.draws.includes(name) };
+  }
+
+  // Wait until a frame of the scene that was sent is drawn, which has too many runs for some lists.
+  async function shown(request) {
+    const end = Date.now() + SHOWN;
+    const read = async (name) => {
+      const asked = access(register(name).address, [], 1);
+      return unpack(name, (await request([LEAD, ...framed(asked)], asked[0], 2))[0]);
+    };
+    const wait = async (holds) => {
+      while (!(await holds())) if (Date.now() > end) throw new Error("the board has drawn no frame of it for 3 seconds");
+    };
+    await wait(async () => !(await read("control")).commit);
+    // A frame of the scene before may have set it.
+    const clear = writes([[register("frames.status").address, pack("frames.status", { list_full: 1 })]]);
+    await request([LEAD, ...framed(clear)], clear[0], 1);
+    const { drawn } = await read("frames.counts"), isFull = async () => (await read("frames.status")).list_full;
+    await wait(async () => (await isFull()) || (await read("frames.counts")).drawn !== drawn);
+    if (await isFull()) throw new Error("a frame of it has more runs than the board's list; build it with a longer LIST");
   }
 
   // Send a scene to a port of Web Serial; return the design.
@@ -134,8 +156,12 @@ const RayCasterBoard = (() => {
         throw new Error(`${scene.rect.length} rectangles, but the board's design holds ${design.rectangles}`);
       const lacks = Object.keys(scene.needs).find((feature) => scene.needs[feature] && !design[feature]);
       if (lacks) throw new Error(`the board's design has no ${lacks}; build it with ${lacks.toUpperCase()}=1`);
+      if (scene.reflections > design.reflections)
+        throw new Error(`the room has ${counted(scene.reflections, "reflection")}, but the board's design computes at ` +
+          `most ${design.reflections}`);
       const [commit] = access(register("control").address, [0]);
       await request(frame(scene, basis, design), commit, 1);
+      if (design.draws) await shown(request);
       return design;
     } finally {
       await reader.cancel();

@@ -68,7 +68,8 @@ class Held {
     const set = (name, held) => (held ? this.names.add(name) : this.names.delete(name));
     // A field takes the keys that it understands; letters in a menu are for the picture.
     const isTaken = ({ target, key }) =>
-      target.matches("textarea, input") || (target.matches("select, [role=tab]:focus-visible, summary") && key.length > 1);
+      target.matches("textarea, input:not([type=color], [type=checkbox], [type=file])") ||
+      (target.matches("input, select, [role=tab]:focus-visible, summary") && (key.length > 1 || key === " "));
     const active = () => !canvas.closest("section").hidden;
     document.addEventListener("keydown", (event) => {
       const name = byKey.get(event.key.toLowerCase());

@@ -10,6 +10,7 @@ class Properties {
     const list = find("room-rect");
     list.addEventListener("change", () => room.select(Number(list.value)));
     fill(find("room-pattern"), RayCaster.schema.patterns, RayCaster.schema.patterns[0]);
+    fill(find("room-cell"), RayCaster.schema.cells);
     const whole = (value) => (value === "" ? null : Math.round(Number(value)));
     const rectangle = (id, key, read) => {
       const field = find(`room-${id}`);
