@@ -19,6 +19,7 @@ from typing import Any
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
+from raycaster.complaints import as_typed
 from raycaster.configuration import Configuration
 from raycaster.convert.digest import verilog_digest
 from raycaster.design.for_scene import Design, left_out, packaged_for
@@ -437,6 +438,9 @@ def command_parser() -> CommandParser:
         "--cells", default="ecp5", metavar="FAMILY", help=f"chip of the netlist: {', '.join(LIBRARIES)} (%(default)s)"
     )
     parser.add_argument("--waves", action="store_true", help="write waveforms next to the pictures")
+    parser.add_argument(
+        "--watch", action="store_true", help="show the scenes again each time one of their files is saved, until Ctrl-C"
+    )
     add_build_option(parser)
     parser.add_argument(
         "--jobs", type=int, default=2, metavar="N", help="models to build, scenes to simulate at a time (default: 2)"
@@ -479,12 +483,38 @@ def main(argv: Sequence[str] | None = None) -> int:
     # make exports its variables, which cocotb would take for its own.
     for name in ("WAVES", "GUI"):
         os.environ.pop(name, None)
-    gates = arguments.gates
     if arguments.cells not in LIBRARIES:
         raise UserError(f"cells: expected {' or '.join(LIBRARIES)}, got {arguments.cells}")
-    console = Console()
+    if arguments.watch and not arguments.scene:
+        raise UserError(f"{as_typed('watch', True)}: needs the scenes to watch")
+    return _watch(arguments, Console()) if arguments.watch else _show(arguments, Console())
+
+
+def _watch(arguments: argparse.Namespace, console: Console) -> int:
+    """Show the scenes, and again each time a file is saved; a mistake in a file is one line. Ctrl-C ends it."""
+    while True:
+        saved = _times_saved(arguments.scene)
+        try:
+            _show(arguments, console)
+        except UserError as error:
+            console.print(f"error: {printable(str(error))}", style="red", soft_wrap=True)
+        console.print("Save a scene to show it again; Ctrl-C ends.", style="dim")
+        try:
+            while _times_saved(arguments.scene) == saved:
+                time.sleep(POLL_SECONDS)
+        except KeyboardInterrupt:
+            return 0
+
+
+def _times_saved(paths: Iterable[Path]) -> list[int | None]:
+    """Return when each file was last saved; None while an editor replaces it."""
+    return [path.stat().st_mtime_ns if path.exists() else None for path in paths]
+
+
+def _show(arguments: argparse.Namespace, console: Console) -> int:
+    """Show the scenes once, and return the exit code."""
+    gates, jobs = arguments.gates, max(1, arguments.jobs)
     runs = _planned(arguments, console)
-    jobs = max(1, arguments.jobs)
     engines = dict.fromkeys(run.configuration.engine for run in runs)
     told = given_options(arguments) | ({"fix": arguments.fix} if arguments.fix else {})
     told |= {"cells": arguments.cells} if gates else {}

@@ -5,13 +5,16 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 import re
 import threading
+import time
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
-from conftest import FLOOR_SCENE, PATTERNED_SCENE, ROOT, SMALL_SCENE, TURNED_SCENE, called, refusal
+from conftest import FLOOR_SCENE, PATTERNED_SCENE, ROOT, SMALL_SCENE, TURNED_SCENE, called, refusal, refused
 from PIL import Image
 
 from raycaster.configuration import FEATURES
@@ -73,6 +76,28 @@ def test_two_scenes_and_one(tmp_path, monkeypatch):
     assert f"1 scene, 0 of 12,288 pixels wrong {sizes}; picture: {small / 'frame.png'}\n" in said
     assert (small / "waves.fst").stat().st_size > 0
     assert str(small / "waves.fst") in said
+
+
+def test_a_scene_is_watched(tmp_path, monkeypatch, capsys):
+    """It is drawn again when it is saved; a mistake in it is one line."""
+    scene, right = tmp_path / "mine.toml", SMALL_SCENE.read_text()
+    scene.write_text(right)
+    edits = iter([right.replace("#c8c8b4", "#ff0000"), right.replace("camera", "camel"), right])
+
+    def edit(_: float) -> None:
+        text = next(edits, None)
+        if text is None:
+            raise KeyboardInterrupt
+        os.utime(scene, ns=(0, 0))  # in case that the clock of files is coarse
+        scene.write_text(text)
+
+    monkeypatch.setattr(simulate, "time", SimpleNamespace(sleep=edit, perf_counter=time.perf_counter))
+    words = [str(scene), *OPTIONS.split(), "--build", str(tmp_path), "--watch"]
+    assert simulate.main(words) == 0
+    said = capsys.readouterr().out
+    assert (said.count("1 scene, 0 of 12,288 pixels wrong"), said.count("Ctrl-C ends")) == (3, 4)
+    assert re.search(r"mine\.toml: .*camel", said)
+    assert "needs the scenes to watch" in refused(simulate.main, "--watch")
 
 
 def test_pictures_of_another_screen_or_engine_are_kept_apart():
