@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
 """An encoder for one channel of a DVI link: a byte or two control bits become a symbol of ten bits."""
 
-from myhdl import always_comb, always_seq, block, concat, instances
+from myhdl import always, block, concat, instances
 
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import assign, plus
-from raycaster.rtl.dvi.ones_count import ones_count
+from raycaster.hdl.verbs import assign, minus, plus, register
 
 SYMBOL_BITS = 10
 DISPARITY_BITS = 5
@@ -32,73 +31,48 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
     controls = CONTROL_SYMBOLS
     ones, word_ones = unsigned(4), unsigned(4)
     chain_xnor, word_visible, invert = bit(), bit(), bit()
-    chained_2, chained_4, chained = (unsigned(8) for _ in range(3))
-    word = unsigned(9)
-    low_bits = word(8, 0)
-    word_control = unsigned(2)
-    excess, sent_excess, flags = signed(4), signed(4), signed(2)
-    disparity = signed(DISPARITY_BITS)
+    chained_2, chained_4, chained, turned, sent_bits = (unsigned(8) for _ in range(5))
+    word, word_control, encoded = unsigned(9), unsigned(2), unsigned(SYMBOL_BITS)
+    sent_excess, flags, disparity = signed(4), signed(2), signed(DISPARITY_BITS)
+    excess, weigh_word = minus(word_ones, 4, Signed(4))
     sent, add_bits = plus(disparity, sent_excess, Signed(DISPARITY_BITS))
     next_disparity, add_flags = plus(sent, flags, Signed(DISPARITY_BITS))
 
-    data_count = ones_count(data, ones)
-    word_count = ones_count(low_bits, word_ones)
-
     # XNOR if XOR would leave more transitions.
+    count_ones = assign(ones, lambda: data[0] + data[1] + data[2] + data[3] + data[4] + data[5] + data[6] + data[7])
     choose_chain = assign(chain_xnor, lambda: ones > 4 or (ones == 4 and not data[0]))
 
     # Each bit becomes the XOR of all bits up to it, in three steps.
     chain_two = assign(chained_2, lambda: data ^ concat(data[7:], False))
-
     chain_four = assign(chained_4, lambda: chained_2 ^ concat(chained_2[6:], False, False))
     chain_eight = assign(chained, lambda: chained_4 ^ concat(chained_4[4:], False, False, False, False))
 
     # A chain of XNORs differs from a chain of XORs in every second bit.
-    @always_seq(clk.posedge, reset=None)
-    def keep_word():
-        if enable:
-            word.next[8:] = chained
-            if chain_xnor:
-                word.next[8:] = chained ^ 0xAA
-            word.next[8] = not chain_xnor
-            word_visible.next = visible
-            word_control.next = control
+    turn = assign(turned, lambda: chained ^ 0xAA if chain_xnor else chained)
 
-    # Half the excess of ones over zeros in the word.
-    weigh_word = assign(excess, lambda: word_ones - 4)
+    keep_word = register(clk, word, lambda: concat(not chain_xnor, turned), enable)
+    keep_visible = register(clk, word_visible, lambda: visible, enable)
+    keep_control = register(clk, word_control, lambda: control, enable)
+
+    count = assign(word_ones, lambda: word[0] + word[1] + word[2] + word[3] + word[4] + word[5] + word[6] + word[7])
 
     # The complement is sent if it reduces the disparity; if the disparity or the word is balanced, it cannot.
-    @always_comb
-    def decide():
-        if disparity == 0 or excess == 0:
-            invert.next = not word[8]
-        else:
-            invert.next = (excess > 0) == (disparity > 0)
+    decide = assign(invert, lambda: not word[8] if disparity == 0 or excess == 0 else (excess > 0) == (disparity > 0))
 
-    # The excess added by the eight bits, and by the two flags above them.
-    @always_comb
-    def weigh_symbol():
-        sent_excess.next = excess
-        flags.next = 0
-        if invert:
-            sent_excess.next = -excess
-        if word[8] and invert:
-            flags.next = 1
-        elif not word[8] and not invert:
-            flags.next = -1
+    # The halved excess that the eight bits add, and the two flags above them.
+    weigh_bits = assign(sent_excess, lambda: -excess if invert else excess)
+    weigh_flags = assign(flags, lambda: word[8] + invert - 1)
 
-    @always_seq(clk.posedge, reset=None)
+    complement = assign(sent_bits, lambda: word[8:] ^ 0xFF if invert else word[8:])
+    join = assign(encoded, lambda: concat(invert, word[8], sent_bits))
+
+    @always(clk.posedge)
     def send():
         if enable:
+            symbol.next = controls[int(word_control)]
+            disparity.next = 0
             if word_visible:
-                symbol.next[8:] = word[8:]
-                if invert:
-                    symbol.next[8:] = word[8:] ^ 0xFF
-                symbol.next[8] = word[8]
-                symbol.next[9] = invert
+                symbol.next = encoded
                 disparity.next = next_disparity
-            else:
-                disparity.next = 0
-                symbol.next = controls[int(word_control)]
 
     return instances()

@@ -10,16 +10,8 @@ from raycaster.golden.tmds import Sample, encode
 from raycaster.hdl.signals import bit
 from raycaster.rtl.common.interfaces import Vga
 from raycaster.rtl.dvi.dvi_encoder import dvi_encoder
-from raycaster.rtl.dvi.ones_count import ones_count
 from raycaster.rtl.dvi.tmds_encoder import SYMBOL_BITS, tmds_encoder
 from raycaster.verif.seeds import seed
-
-
-def test_ones_count(leaf_of):
-    leaf = leaf_of(ones_count, bits=8, count=4)
-    for bits in range(256):
-        leaf.case({"bits": bits}, {"count": bits.bit_count()})
-    leaf.check()
 
 
 def test_tmds_encoder(leaf_of):
