@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 from raycaster.configuration import Facts
 
-COMMANDS: Mapping[str, str] = {"area": "3 min", "area --route": "15 min", "fit": "4 min per scene", "docs": "7 min"}
+COMMANDS: Mapping[str, str] = {"area": "3 min", "area --route": "5 min", "fit": "4 min per scene", "docs": "7 min"}
 """Durations by command, with its default options."""
 
 
