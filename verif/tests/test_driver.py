@@ -7,6 +7,7 @@ import ctypes
 import re
 import shutil
 import subprocess
+from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +27,7 @@ from host_software import (
     members,
 )
 from hypothesis import given, reject
-from tcl import tcl_calls
+from tcl import compare_calls, tcl_calls
 
 from raycaster.configuration import ConfigurationError
 from raycaster.convert.take_home import TOP
@@ -356,7 +357,15 @@ def test_cycles(device):
 
 def test_every_error_has_its_own_text(library):
     texts = [library.raycaster_error_text(number).decode() for number in range(len(Error) + 1)]
-    assert len(set(texts)) == len(texts)
+    # Words from the header's names and comments.
+    words = {
+        "OK": "no error", "NOT_FOUND": "address", "OTHER_VERSION": "version", "NO_SUCH_RECTANGLE": "table",
+        "OUTSIDE_WORLD": "511", "NO_PLANE": "share", "TOO_MANY_REFLECTIONS": "reflections", "FIXED": "built",
+        "STILL_COMMITTING": "live", "NO_FRAME": "frame", "UNDERRUN": "row", "BAD_RECTANGLE": "plane",
+        "NOT_IN_HARDWARE": "generated", "NO_SUCH_LOOK": "pattern",
+    }  # fmt: skip
+    for error in Error:
+        assert [text for text in texts if words[error.name] in text] == [texts[error]]
     assert texts[-1] == "unknown error"
     assert not any(text.endswith(".") for text in texts)
 
@@ -417,14 +426,20 @@ def test_a_fault_in_the_access_is_noticed(tmp_path, nios, right, wrong):
         check_access(tmp_path, nios, driver=tmp_path)
 
 
-def test_a_cpp_compiler_takes_the_header():
-    subprocess.run(["g++", "-x", "c++", *STRICT[1:], "-fsyntax-only", DRIVER_HEADER], check=True)
+def test_a_cpp_program_calls_the_driver(tmp_path):
+    program = '#include "raycaster.h"\nint main() { raycaster device; return raycaster_probe(&device, nullptr); }\n'
+    sources = ("-x", "c++", "-", "-x", "c", SOFTWARE / "raycaster.c")
+    command = ["g++", *STRICT[1:], f"-I{SOFTWARE}", "-o", tmp_path / "program", *sources]
+    subprocess.run(command, input=program, text=True, check=True)
 
 
 def test_the_driver_for_nios(tmp_path):
-    """The description runs in a real Tcl, and names existing files and the component."""
+    """The description has the commands that were reviewed, and names existing files and the component."""
     calls = tcl_calls(tmp_path, SOFTWARE / "raycaster_sw.tcl")
-    assert calls[0][0] == "create_driver"
-    assert ["set_sw_property", "hw_class_name", TOP] in calls
+    compare_calls("raycaster_sw", calls)
+    properties = {call[1]: call[2] for call in calls if call[0] == "set_sw_property"}
+    assert properties["hw_class_name"] == TOP
+    least = properties["min_compatible_hw_version"]
+    assert [int(part) for part in least.split(".")] <= [int(part) for part in version("raycaster").split(".")]
     files = {call[2] for call in calls if call[1] in ("c_source", "include_source")}
     assert files == {path.name for path in SOFTWARE.glob("*.[ch]")}
