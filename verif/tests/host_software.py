@@ -125,6 +125,8 @@ class Registers:
 
     def _request(self, offset: int, word: int | None = None) -> None:
         assert offset % 4 == 0
+        # Otherwise StartScreen would also come by itself.
+        self.file.clocks = 0
         while not self.file.clock(False, Request(offset // 4, word)):
             pass
         # One clock to answer or to write, and one for a commit's copy.

@@ -117,6 +117,8 @@ def test_the_memory_map_for_c_is_up_to_date():
 
 def test_the_demo_is_played_as_on_the_host(firmware, tmp_path):
     script, registers = load(DEMO)[:430], Registers(CONFIG)
+    # A PicoRV32 polls every 25 cycles, and a frame is 420,000 cycles at 25 MHz.
+    registers.polls_to_frame = 420_000 // 25
     machine = Machine(firmware.words, script, registers)
     assert (registers.file.live.run, registers.file.live.reflections) == (True, 1)
     version = MAP["version"].fields
@@ -132,7 +134,7 @@ def test_the_demo_is_played_as_on_the_host(firmware, tmp_path):
         # The last three writes commit the picture, clear the errors, and acknowledge the next frame.
         assert written[:-3] == expected.written, f"frame {number}"
         assert written[-2][0] == 4 * MAP["status"].address
-    # A PicoRV32 takes about five cycles per instruction, and a frame is 420,000 cycles at 25 MHz.
+    # A PicoRV32 takes about five cycles per instruction.
     assert max(machine.instructions[1:]) < 420_000 / 5 / 2
 
 
@@ -217,19 +219,18 @@ def test_errors_are_reported_once(firmware, register, fields, complaint):
     assert machine.said.endswith(f"{complaint}\r\n")
 
 
-@pytest.mark.parametrize(("frame", "reports"), [(0, 0), (3, 1)])
-def test_an_underrun_is_reported(firmware, frame, reports):
-    """Underruns before the start are not reported."""
+def test_an_underrun_is_reported(firmware):
+    """Underruns before the start are not reported, and those of successive frames are reported once."""
 
     class Late(Registers):
         def start_screen(self) -> LiveScene:
-            self.file.agent.underrun |= self.file.agent.frame == frame > 0
+            self.file.agent.underrun |= self.file.agent.frame in (3, 4, 7)
             return super().start_screen()
 
     registers = Late(CONFIG)
-    registers.file.agent.underrun = frame == 0
+    registers.file.agent.underrun = True
     machine = Machine(firmware.words, (0,) * 9, registers)
-    assert machine.said.count("ray tracer: a row was not complete in time\r\n") == reports
+    assert machine.said.count("ray tracer: a row was not complete in time\r\n") == 2
     assert not registers.file.agent.underrun
 
 

@@ -113,6 +113,7 @@ def test_a_recorded_game(capsys, tmp_path):
     assert game.main(["--screen", "tiny", "--frames", "14", "--build", str(BUILD), "--output", str(tmp_path)]) == 0
     said = capsys.readouterr().out
     assert re.search(r"RayCaster \d+\.\d+, engine span, units 3,", said), said
+    assert "ray tracer:" not in said
     assert len(list(tmp_path.glob("frame_*.png"))) == 14
     # The animation merges identical frames.
     assert 2 <= Image.open(tmp_path / game.ANIMATION).n_frames <= 14
