@@ -105,7 +105,7 @@ def plain(value: object) -> object:
 
 
 def test_games_are_played_as_they_were_kept(library):
-    """Every value of the game in every frame, and in some games the scene: `kept/games.txt` digests each 250 frames."""
+    """Every value of the game in every frame, and the scene, in some games of each 250th: see `kept/games.txt`."""
     lost = [*[0, FIRE] * 20, *[CORNER] * 900, *[0, FIRE] * 200]
     lines = []
     for name in ("demo", "lost", "wild", "nobody", "clever"):
@@ -120,6 +120,8 @@ def test_games_are_played_as_they_were_kept(library):
         else:
             frames = ((session.step(held), ()) for held in buttons)
         for number, (events, scene) in enumerate(frames, 1):
+            if number % 250 == 0:
+                assert session.draw() == Error.OK
             found.update(json.dumps([members(game), sorted(events), scene], default=plain).encode())
             happened.update(events)
             if number % 250 == 0:
@@ -171,6 +173,15 @@ def test_a_game_starts_the_same_whatever_came_before(library):
         assert session.step(FIRE) == {"STARTED"}
         games.append(bytes(session.game))
     assert games[0] == games[1] == games[2]
+
+
+def test_four_courts_repeat(session):
+    courts = []
+    for level in range(1, 6):
+        session.game.level = level
+        assert session.draw() == Error.OK
+        courts.append(session.device.shown().rectangles.colours[Entry.FLOOR :].tolist())
+    assert [courts.index(court) for court in courts] == [0, 1, 2, 3, 0]
 
 
 def test_what_is_left_out_alone_is_not_drawn(session):
