@@ -71,6 +71,8 @@ def load(path: Path | str) -> tuple[int, ...]:
         held = held_bits(names)
     if not ended:
         raise PlayScriptError(f"{path}: expected a last line with the number of frames and the word end")
+    if not frames:
+        raise PlayScriptError(f"{path}: expected at least one frame, got none")
     return tuple(frames)
 
 

@@ -5,8 +5,8 @@
 create_driver raycaster_driver
 
 set_sw_property hw_class_name ray_caster_module
-set_sw_property version 0.1
-set_sw_property min_compatible_hw_version 0.1
+set_sw_property version 1.0.0
+set_sw_property min_compatible_hw_version 1.0
 
 # A program calls raycaster_probe itself, with the base address from system.h.
 set_sw_property auto_initialize false
