@@ -37,6 +37,7 @@ from raycaster.golden.world import Rectangles
 from raycaster.registers import register_map
 from raycaster.rtl.engines import ENGINES, EXACT
 from raycaster.scene import PATTERNS, UNTURNED, Camera, load_scene
+from raycaster.sim.register_model import EVERY_LANE, Request, SceneFollower
 from raycaster.sw.firmware import SOFTWARE, STRICT
 from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.seeds import seed
@@ -170,6 +171,23 @@ def test_any_scene_is_shown(library, config):
             np.testing.assert_array_equal(getattr(shown, name)[used], getattr(wanted, name))
         for name in ("cells", "colours_2"):
             np.testing.assert_array_equal(getattr(shown, name)[patterned], getattr(wanted, name)[patterned])
+
+
+def test_the_last_clock_of_a_commit():
+    """Followers of writes agree with the model of the registers, which is compared with the hardware."""
+    control = MAP["control"]
+    word, found = control.pack(run=1, commit=1), []
+    for clock in range(6):
+        model, follower = Registers(CONFIG).file, SceneFollower(CONFIG)
+        model.clock(False, None)
+        model.clocks = model.start_screen_clock - clock
+        for request in (Request(control.address, word), *[None] * clock):
+            model.clock(False, request)
+        follower.write(0, control.address, word, EVERY_LANE)
+        follower.start_screen(clock)
+        assert follower.live.run == model.live.run
+        found.append(model.live.run)
+    assert set(found) == {False, True}
 
 
 OF_A_RECTANGLE = {
