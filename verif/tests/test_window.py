@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import re
+import sys
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import Mock
 
 import numpy as np
 import pygame
@@ -17,9 +19,10 @@ from raycaster.design.decide import configure
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.play import game, window
-from raycaster.play.machine import Machine, build_machine
+from raycaster.play.machine import Frame, Machine, build_machine
 from raycaster.play.walk import Walker, design_to_walk
 from raycaster.scene import UNTURNED, Camera, load_scene, packaged_scenes
+from raycaster.sim.simulator import SimulationError
 
 MIRROR_ROOM = ROOT / "raycaster" / "scenes" / "mirror_room.toml"
 
@@ -41,6 +44,29 @@ def test_the_game_is_played(unseen, tmp_path, capsys):
     )
     picture = np.array(Image.open(shot).convert("RGB"))
     assert picture.shape[0] > 96 and len(np.unique(picture.reshape(-1, 3), axis=0)) > 5
+
+
+@pytest.mark.slow
+def test_a_walk_is_played(unseen, monkeypatch, capsys):
+    """A held key turns the camera in each frame."""
+    held, look, frames = window.Window.held, window.Judge.look, []
+
+    def press(shown: window.Window) -> int | None:
+        pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_RIGHT))
+        return held(shown)
+
+    def watch(judge: window.Judge, frame: Frame) -> None:
+        frames.append(frame)
+        look(judge, frame)
+
+    monkeypatch.setattr(window.Window, "held", press)
+    monkeypatch.setattr(window.Judge, "look", watch)
+    design = ["--screen", "tiny", "--units", "1", "--colour-bits", "5", "--build", str(BUILD)]
+    window.main(["mirror_room", *design, "--frames", "16"])
+    assert re.search(r"^16 frames, .* in [1-9]\d* of them, .* 0 pixels are wrong$", capsys.readouterr().out, re.M)
+    room, shown = load_scene(MIRROR_ROOM), frames[-1].scene
+    assert shown.rectangles.enabled.sum() == len(room.rect)
+    assert shown.basis in [room.camera.model_copy(update={"yaw": 2.0 * turns}).basis for turns in range(1, 17)]
 
 
 # Two clocks per pixel, and one, with and without a camera that turns.
@@ -102,6 +128,22 @@ def test_a_light_goes_around_the_room(tmp_path, capsys):
     assert all(0 <= value < 512 for place in places for value in place)
     with pytest.raises(UserError, match="seed engine"):
         game.main(["evening", "--screen", "tiny", "--engine", "seed", "--output", str(tmp_path / "none")])
+
+
+def test_a_wrong_film_fails(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr(game, "film_scene", Mock(return_value=3))
+    monkeypatch.setattr(game, "write_animation", Mock())
+    assert game.main(["mirror_room", "--output", str(tmp_path)]) == 1
+    assert "3 pixels differ" in capsys.readouterr().out
+    monkeypatch.setattr(game, "build_model", Mock())
+    monkeypatch.setattr(game, "play", Mock(side_effect=SimulationError("frame 2: 3 pixels are wrong")))
+    assert game.main(["--build", str(tmp_path)]) == 1
+    assert capsys.readouterr().err == "frame 2: 3 pixels are wrong\n"
+
+
+def test_a_simulation_that_ends():
+    with pytest.raises(SimulationError, match="the simulated system ended"):
+        Machine([sys.executable, "-c", ""], configure(engine="span", screen="tiny"))
 
 
 @pytest.mark.slow
