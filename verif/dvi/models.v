@@ -112,7 +112,9 @@ module ODDRX1F (
     input wire SCLK, RST, D0, D1,
     output wire Q
 );
-    ddr_output ddr (.clk(SCLK), .d0(D0), .d1(D1), .q(Q));
+    wire sent;
+    ddr_output ddr (.clk(SCLK), .d0(D0), .d1(D1), .q(sent));
+    assign Q = sent && !RST;
 endmodule
 
 // iCE40: the PLL with its input at a pin, with internal feedback. Limits are those of the UltraPlus family's data sheet.

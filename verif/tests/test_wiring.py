@@ -337,6 +337,7 @@ FAULTS = [
     (ICE, "icebreaker/board.toml", 'RX = { standard = "LVCMOS33", pins = "6" }',
      'RX = { standard = "LVCMOS33", pins = "11" }'),
     (LITE, "de10_lite/board.toml", 'reset = "SW[2]"', 'reset = "~SW[2]"'),
+    (ULX3S, "ecp5/ddr_pin.v", ".RST(1'b0)", ".RST(1'b1)"),
 ]  # fmt: skip
 """Faults that the checks must notice: a design with the fault, the file below `fpga/`, the right and the wrong text."""
 
