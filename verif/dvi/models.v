@@ -89,7 +89,8 @@ module EHXPLLL #(
         .REFERENCE(CLKI_DIV), .FEEDBACK(CLKFB_DIV), .LOOP(FEEDBK_PATH == "CLKOP" ? CLKOP_DIV : CLKOS_DIV),
         .LEGAL((FEEDBK_PATH == "CLKOP" || FEEDBK_PATH == "CLKOS") && CLKI_DIV >= 1 && CLKI_DIV <= 128
             && CLKFB_DIV >= 1 && CLKFB_DIV <= 80 && CLKOP_DIV >= 1 && CLKOP_DIV <= 128
-            && CLKOS_DIV >= 1 && CLKOS_DIV <= 128),
+            && CLKOS_DIV >= 1 && CLKOS_DIV <= 128 && OUTDIVIDER_MUXA == "DIVA" && OUTDIVIDER_MUXB == "DIVB"
+            && CLKOP_FPHASE == 0 && CLKOS_FPHASE == 0),
         .COMPARED_LEAST(10), .COMPARED_MOST(400), .LEAST(400), .MOST(800)
     ) oscillator (
         .clk_in(CLKI), .feedback(CLKFB), .reset(RST && PLLRST_ENA == "ENABLED" || STDBY && STDBY_ENABLE == "ENABLED"),
@@ -119,16 +120,19 @@ endmodule
 
 // iCE40: the PLL with its input at a pin, with internal feedback. Limits are those of the UltraPlus family's data sheet.
 module SB_PLL40_PAD #(
-    parameter FEEDBACK_PATH = "", DIVR = 0, DIVF = 0, DIVQ = 1, FILTER_RANGE = 0
+    parameter FEEDBACK_PATH = "", DIVR = 0, DIVF = 0, DIVQ = 1, FILTER_RANGE = 1
 ) (
     input wire PACKAGEPIN, RESETB, BYPASS,
     output wire PLLOUTGLOBAL, LOCK
 );
+    // Limits of the phase comparison in MHz: FILTER_RANGE is 1 from 10 MHz on, and 6 up to 133 MHz, as icepll sets it.
+    localparam [55:0] LIMITS = {8'd133, 8'd101, 8'd66, 8'd44, 8'd26, 8'd17, 8'd10};
     wire tick;
     pll_oscillator #(
         .REFERENCE(DIVR + 1), .FEEDBACK(DIVF + 1),
         .LEGAL(FEEDBACK_PATH == "SIMPLE" && DIVR >= 0 && DIVR <= 15 && DIVF >= 0 && DIVF <= 127 && DIVQ >= 1 && DIVQ <= 6),
-        .COMPARED_LEAST(10), .COMPARED_MOST(133), .LEAST(533), .MOST(1066)
+        .COMPARED_LEAST(LIMITS[8*FILTER_RANGE-8 +: 8]), .COMPARED_MOST(LIMITS[8*FILTER_RANGE +: 8]), .LEAST(533),
+        .MOST(1066)
     ) oscillator (
         .clk_in(PACKAGEPIN), .feedback(tick), .reset(!RESETB), .tick(tick), .locked(LOCK)
     );
@@ -173,8 +177,9 @@ module rPLL #(
     input wire [3:0] PSDA, FDLY, DUTYDA,
     output wire CLKOUT, LOCK
 );
-    wire tick;
-    integer count = 0;
+    wire tick, settled;
+    integer count = 0, found;
+    real mhz = 0;
     reg divided = 1'b0;
     pll_oscillator #(
         .REFERENCE(IDIV_SEL + 1), .FEEDBACK(FBDIV_SEL + 1), .LOOP(ODIV_SEL),
@@ -184,8 +189,13 @@ module rPLL #(
         .COMPARED_LEAST(3), .COMPARED_MOST(500), .LEAST(500), .MOST(1250)
     ) oscillator (
         .clk_in(CLKIN), .feedback(CLKFB_SEL == "internal" ? divided : CLKFB), .reset(RESET || RESET_P),
-        .tick(tick), .locked(LOCK)
+        .tick(tick), .locked(settled)
     );
+
+    // The charge pump and the filter are set for an input of FCLKIN, in MHz.
+    initial found = $sscanf(FCLKIN, "%f", mhz);
+    assign LOCK = settled && oscillator.compared * (IDIV_SEL + 1) > mhz * 0.999
+        && oscillator.compared * (IDIV_SEL + 1) < mhz * 1.001;
 
     always @(tick) begin
         count = count == ODIV_SEL - 1 ? 0 : count + 1;
