@@ -55,6 +55,8 @@ def settings(name: str, directory: Path) -> tuple[set[str], list[list[str]]]:
 def test_settings_and_constraints(name, without_hardware, tmp_path):
     """The files are Tcl; except the pins, which another test checks, their commands are those that were reviewed."""
     ports, calls = settings(name, tmp_path / name)
+    # The settings are those of the revision that is opened.
+    assert (tmp_path / name / f"{TOP}.qpf").read_text() == f'PROJECT_REVISION = "{TOP}"\n'
     # Each port has a constraint, and no constraint is for another port.
     named = [word[len("[get_ports ") : -1] for call in calls for word in call if word.startswith("[get_ports ")]
     assert ports == {port for found in named for port in found.strip("{}").split()}
