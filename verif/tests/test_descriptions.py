@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from conftest import ROOT
 from systemrdl.node import RegNode
 from tcl import compare_calls, tcl_calls
@@ -15,6 +16,7 @@ from tcl import compare_calls, tcl_calls
 from raycaster.configuration import MOST_RECTANGLES, Configuration
 from raycaster.convert.platform_designer import COMPONENT, INTERFACES, NIOS_SYSTEM
 from raycaster.convert.register_views import HEADER, SOFTWARE, write_header
+from raycaster.convert.take_home import TOP
 from raycaster.convert.write import write_verilog
 from raycaster.design.decide import configure
 from raycaster.registers import address_bits, compile_registers
@@ -29,6 +31,25 @@ def test_the_component_of_platform_designer(tmp_path):
     write_verilog(small(), tmp_path / "verilog")
     calls = tcl_calls(tmp_path / "verilog", Path(COMPONENT))
     compare_calls("platform_designer", [call for call in calls if call[0] != "add_fileset_file"])
+
+
+@pytest.mark.parametrize(
+    ("config", "period", "relation"),
+    [
+        # 50 MHz, two clocks per pixel.
+        (small(), "20.000", ("-divide_by", "2")),
+        # 74.25 MHz, the pixel clock of 1280x720 in CTA-861.
+        (configure(engine="span", rows=180, rectangles=1, reflections=0), "13.468", ("-invert",)),
+    ],
+    ids=["divided", "inverted"],
+)
+def test_the_constraints(config, period, relation, tmp_path):
+    """`vga_clk` rises in the middle of each pixel."""
+    write_verilog(config, tmp_path / "verilog")
+    assert tcl_calls(tmp_path / "verilog", Path(f"{TOP}.sdc")) == [
+        ["create_clock", "-name", "clk", "-period", period, "[get_ports clk]"],
+        ["create_generated_clock", "-name", "vga_clk", "-source", "[get_ports clk]", *relation, "[get_ports vga_clk]"],
+    ]
 
 
 def test_the_nios_system(tmp_path):
