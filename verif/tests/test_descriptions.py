@@ -56,6 +56,9 @@ def test_the_nios_system(tmp_path):
     """The system has the commands that were reviewed, and connects each interface of the component."""
     calls = tcl_calls(tmp_path, NIOS_SYSTEM, "set family {MAX 10}\nset device X")
     compare_calls("nios_system", calls)
+    # The usual chip is that of Terasic's DE2-115.
+    usual = [call[1:] for call in tcl_calls(tmp_path, NIOS_SYSTEM) if call not in calls]
+    assert usual == [["DEVICE_FAMILY", "Cyclone IV E"], ["DEVICE", "EP4CE115F29C7"]]
     ends = {end for call in calls for end in call[1:] if end.startswith("raycaster.")}
     assert ends == {f"raycaster.{interface[0]}" for interface in INTERFACES}
     # The registers of the largest design end below the next agent's base address.
