@@ -180,7 +180,7 @@ def top_of(board: OpenBoard, config: Configuration) -> str:
 // Pins of the {board.title}.
 
 module {board.name} (
-{board.port_list({name: list(board.bits(name)) for name in board.signals})}
+{board.port_list}
 );
 
 localparam COLOUR_BITS = {config.colour_bits};

@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
@@ -120,12 +120,11 @@ class Board(_Strict):
         for name in self.outputs:
             if name not in self.signals:
                 raise ValueError(f"outputs: {name} is not among the signals")
+        read = [value.removeprefix("~") for value in (self.clock, *self.inputs.values())]
+        for bit in self.pins:
+            if bit not in read and _signal(bit) not in self.outputs:
+                raise ValueError(f"signals: {bit} is neither the clock nor used in inputs or outputs")
         return self
-
-    @property
-    def used(self) -> set[str]:
-        """Names of the signals in use: the clock, and those in the inputs and outputs."""
-        return {self.clock, *map(_signal, self.inputs.values()), *self.outputs}
 
     def pressed(self, name: str) -> str:
         """Return the Verilog of an input, which is 0 if the board lacks it."""
@@ -136,11 +135,12 @@ class Board(_Strict):
         """Verilog of all `BUTTONS`, the first in bit 0."""
         return f"{{{', '.join(map(self.pressed, reversed(BUTTONS)))}}}"
 
-    def port_list(self, ports: Mapping[str, Sequence[str]]) -> str:
-        """Return the Verilog of the top's ports, given by name and bits."""
+    @property
+    def port_list(self) -> str:
+        """Verilog of the top's ports, which are all signals."""
         lines = []
-        for name, bits in ports.items():
-            vector = "" if list(bits) == [name] else f" [{len(bits) - 1}:0]"
+        for name, signal in self.signals.items():
+            vector = "" if isinstance(signal.pins, str) else f" [{len(signal.pins) - 1}:0]"
             lines.append(f"    {'output' if name in self.outputs else 'input '} wire{vector} {name}")
         return ",\n".join(lines)
 
@@ -166,7 +166,7 @@ class Board(_Strict):
 
 
 class QuartusBoard(Board):
-    """Board with an Intel (formerly Altera) chip. Lists more signals than projects use, named as in its manual.
+    """Board with an Intel (formerly Altera) chip, with the signal names of its manual.
 
     Its outputs are outputs of `scene_system`.
     """
@@ -201,7 +201,7 @@ class QuartusBoard(Board):
 
 
 class OpenBoard(Board):
-    """Board whose bitstreams Yosys and nextpnr make. Every signal here is a port of its top."""
+    """Board whose bitstreams Yosys and nextpnr make."""
 
     flow: Literal["ecp5", "ice40", "gowin"]
     """Name of an entry of `flows.FLOWS`, and of the folder with modules made of the chip's own cells."""
@@ -216,13 +216,6 @@ class OpenBoard(Board):
     """Kind of output: a DVI link driven by the chip itself, or colours and syncs for a DAC or a transmitter."""
     loader: tuple[str, ...]
     """openFPGALoader's options for the board."""
-
-    @model_validator(mode="after")
-    def _check_use(self) -> OpenBoard:
-        for name in self.signals:
-            if name not in self.used:
-                raise ValueError(f"signals: {name} is neither the clock nor used in inputs or outputs")
-        return self
 
 
 Kind = TypeVar("Kind", bound=Board)

@@ -8,7 +8,7 @@ board's SRAM, which the original design used, is not needed: there is no process
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from raycaster.configuration import Configuration
@@ -77,27 +77,15 @@ def _settings(board: QuartusBoard, config: Configuration, sources: list[str]) ->
     lines += [f'set_global_assignment -name VERILOG_FILE "{source}"' for source in sources]
     lines.append(f'set_global_assignment -name SDC_FILE "{TOP}.sdc"')
     lines.append(f"set_parameter -name COLOUR_BITS {config.colour_bits}")
-    for name, bits in _ports(board).items():
-        for bit in bits:
-            lines.append(f"set_location_assignment PIN_{board.pins[bit]} -to {bit}")
-            lines.append(f'set_instance_assignment -name IO_STANDARD "{board.signals[name].standard}" -to {bit}')
+    for name, signal in board.signals.items():
+        for bit, pin in board.bits(name).items():
+            lines.append(f"set_location_assignment PIN_{pin} -to {bit}")
+            lines.append(f'set_instance_assignment -name IO_STANDARD "{signal.standard}" -to {bit}')
     return "\n".join(lines) + "\n"
-
-
-def _ports(board: QuartusBoard) -> dict[str, list[str]]:
-    """Return the bits of each port of the top: of an input, no bits after the last one that is used."""
-    read = [bit.removeprefix("~") for bit in (board.clock, *board.inputs.values())]
-    ports = {}
-    for name in [name for name in board.signals if name in board.used]:
-        bits = list(board.bits(name))
-        last = max((bits.index(bit) for bit in read if bit in bits), default=len(bits) - 1)
-        ports[name] = bits[: last + 1]
-    return ports
 
 
 def top_of(board: QuartusBoard) -> str:
     """Generate the top, which connects the board's pins to `scene_system`."""
-    ports = _ports(board)
     controls = "".join(
         f"// {name}: {bit.removeprefix('~')} {'low' if bit.startswith('~') else 'high'}.\n"
         for name, bit in board.inputs.items()
@@ -105,7 +93,7 @@ def top_of(board: QuartusBoard) -> str:
     driven = {source: name for name, source in board.outputs.items()}
     video = ",\n    ".join(f".{port}({port if port in CHANNELS else driven.get(port, '')})" for port in VGA)
     pins = "".join(
-        f"channel_pins #(.BITS(COLOUR_BITS), .PINS({len(ports[driven[channel]])})) {channel}_pins "
+        f"channel_pins #(.BITS(COLOUR_BITS), .PINS({len(board.bits(driven[channel]))})) {channel}_pins "
         f"(.channel({channel}), .pins({driven[channel]}));\n"
         for channel in CHANNELS
     )
@@ -117,7 +105,7 @@ def top_of(board: QuartusBoard) -> str:
 {controls}module {TOP} #(
     parameter COLOUR_BITS = 8
 ) (
-{board.port_list(ports)}
+{board.port_list}
 );
 
 wire [COLOUR_BITS-1:0] {", ".join(CHANNELS)};
@@ -136,10 +124,10 @@ endmodule
 
 def _constraints(board: QuartusBoard, config: Configuration) -> str:
     """Generate the timing constraints."""
-    ports, period, divided = _ports(board), clock_period(config), config.screen_geometry.clocks_per_pixel
-    buttons = _patterns(ports, lambda name: name not in (*board.outputs, board.clock))
+    period, divided = clock_period(config), config.screen_geometry.clocks_per_pixel
+    buttons = _patterns(board, lambda name: name not in (*board.outputs, board.clock))
     # Outputs that no register captures: all if there is no DAC, which the sync signals bypass.
-    free = _patterns(ports, lambda name: name in (("VGA_HS", "VGA_VS") if board.dac_clock else board.outputs))
+    free = _patterns(board, lambda name: name in (("VGA_HS", "VGA_VS") if board.dac_clock else board.outputs))
     text = f"""# SPDX-License-Identifier: MIT
 # RayCaster, {config.name}, on the {board.title}.
 create_clock -name clk -period {period} [get_ports {board.clock}]
@@ -154,7 +142,7 @@ set_min_delay -to [get_ports {{{free}}}] 0.000
 """
     if board.dac_clock is None:
         return text
-    taken = _patterns(ports, lambda name: name in board.outputs and name not in ("VGA_HS", "VGA_VS", board.dac_clock))
+    taken = _patterns(board, lambda name: name in board.outputs and name not in ("VGA_HS", "VGA_VS", board.dac_clock))
     return f"""{text}
 # The pixel clock comes from a register and drives the DAC's pin.
 create_generated_clock -name vga_clk -divide_by {divided} -source [get_ports {board.clock}] \\
@@ -169,9 +157,10 @@ set_multicycle_path -hold -start -from [get_clocks clk] -to [get_clocks dac_clk]
 """
 
 
-def _patterns(ports: Mapping[str, Sequence[str]], chosen: Callable[[str], bool]) -> str:
+def _patterns(board: QuartusBoard, chosen: Callable[[str], bool]) -> str:
     """Return Tcl patterns of the chosen ports, such as `KEY[*] VGA_HS`."""
-    return " ".join(name if list(bits) == [name] else f"{name}[*]" for name, bits in ports.items() if chosen(name))
+    ports = ((name, "" if isinstance(signal.pins, str) else "[*]") for name, signal in board.signals.items())
+    return " ".join(f"{name}{bits}" for name, bits in ports if chosen(name))
 
 
 def command_parser() -> CommandParser:

@@ -69,7 +69,8 @@ MODELS = ROOT / "verif" / "dvi" / "models.v"
         ("de10_lite", '["B8", "A7"]', "[]", 'signals.KEY.pins: must be a pin such as "N2", or a list of them'),
         ("de2", 'dac_clock = "VGA_CLK"', 'dac_clock = "DAC"', "DAC is missing, but is one of the board's clocks"),
         ("de10_lite", 'VGA_HS = "vga_hs"', 'VGA_HS = "hs"', "outputs: hs is not one of vga_r, "),
-        ("de10_lite", 'VGA_R = "vga_r"', "", "outputs: none is vga_r"),
+        ("de10_lite", 'VGA_R = "vga_r"', 'VGA_R = "vga_g"', "outputs: none is vga_r"),
+        ("de2", '"P25"]', '"P25", "AE14"]', "SW[3] is neither the clock nor used in inputs or outputs"),
         ("de10_lite", "family =", "familiy =", "familiy: is unknown (did you mean family?)"),
     ],
 )  # fmt: skip

@@ -330,7 +330,7 @@ FAULTS = [
     (ICE, "icebreaker/board.toml", 'LEDG_N = "~locked"', 'LEDG_N = "locked"'),
     (DE2, "de2/board.toml", '"C8", "F10"', '"F10", "C8"'),
     (DE2, "de2/board.toml", 'VGA_BLANK = "vga_blank_n"', 'VGA_BLANK = "vga_sync_n"'),
-    (DE2, "de2/board.toml", 'forward = "~KEY[2]"', 'forward = "~KEY[1]"'),
+    (DE2, "de2/board.toml", 'forward = "~KEY[2]"\nback = "~KEY[1]"', 'forward = "~KEY[1]"\nback = "~KEY[2]"'),
     (DE2, "channel_pins.v", "i % BITS", "0"),
     (LITE, "de10_lite/board.toml", 'pins = "N3"', 'pins = "N4"'),
     (ULX3S, "dvi_board.v", ".uart_rx(serial_in)", ".uart_rx(1'b1)"),
