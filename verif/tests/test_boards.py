@@ -379,16 +379,18 @@ def test_a_small_bitstream(board, tmp_path):
     flow, output = FLOWS[board.flow], tmp_path / "out"
     outcome = make_bitstream(board, small_design(board, rows=60, units=1, allow_underrun=True), output)
     assert not outcome.missed
-    logic, _, multipliers, _ = flow.cells
+    report = json.loads((output / "report.json").read_text())
+    logic, _, multipliers, memories = flow.cells
     assert outcome.cells[logic][0] > 300
     assert outcome.cells[logic][1] == board.elements
     assert outcome.cells[multipliers][1] == board.multipliers
     assert 0 < outcome.cells[multipliers][0] <= board.multipliers
+    assert report["utilization"][memories]["available"] == board.memories
     assert len((output / f"{board.name}.{flow.bitstream}").read_bytes()) > 10_000
     assert json.loads((output / "result.json").read_text())["clocks"]["clk"] == list(outcome.clocks["clk"])
     if board.flow != "gowin":
         # nextpnr derives the clocks from the oscillator, by its own knowledge of PLLs.
-        derived = json.loads((output / "report.json").read_text())["fmax"]
+        derived = report["fmax"]
         for net, (_, required) in outcome.clocks.items():
             [constraint] = [found["constraint"] for name, found in derived.items() if re.search(rf"\b{net}\b", name)]
             assert constraint == pytest.approx(required, rel=1e-3)
