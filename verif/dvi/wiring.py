@@ -27,17 +27,20 @@ class Wiring:
     """Parts of a board, by the pins of its chip.
 
     Attributes:
-        source: source of the pins and levels, other than that of `board.toml`.
+        source: source of the chip, the pins and levels, other than that of `board.toml`.
+        chip: order code of the chip.
         clock: pin of the oscillator.
         mhz: frequency of the oscillator.
         pressed: pin of each button and of reset; `~` if it is low while pressed.
         outputs: pins of the outputs by role, from bit 0 on.
         heard: pin of the line from the USB chip, if there is one.
+        loader: the board's name for openFPGALoader, from its doc/boards.yml; empty for boards that Quartus programs.
         lit: meaning of each other output, by pin: a level, `locked`, or the pin of a button; `~` inverts it.
         options: pins by their standard and further options, as the pin file has them.
     """
 
     source: str
+    chip: str
     clock: str
     mhz: float
     pressed: Mapping[str, str]
@@ -45,6 +48,7 @@ class Wiring:
     options: Mapping[str, str]
     lit: Mapping[str, str] = field(default_factory=dict)
     heard: str = ""
+    loader: str = ""
 
     @property
     def pins(self) -> dict[str, str]:
@@ -58,6 +62,8 @@ _KEYS = ("reset", "up", "down", "forward", "back", "left", "right")
 WIRING = {
     "ulx3s": Wiring(
         source="amaranth-boards, ulx3s.py: buttons by label, hdmi by channel; ULX3S's manual: the ESP32's GPIO0",
+        chip="LFE5U-85F-6BG381C",
+        loader="ulx3s",
         clock="G2",
         mhz=25,
         pressed=dict(zip(_KEYS, ("~D6", "R18", "V1", "R1", "T1", "U1", "H16"), strict=True)),
@@ -76,6 +82,8 @@ WIRING = {
     ),
     "icepi_zero": Wiring(
         source="coldelectrons' amaranth-boards, icepi_zero.py for version 1.3",
+        chip="LFE5U-25F-6BG256C",
+        loader="icepi-zero",
         clock="M1",
         mhz=50,
         pressed=dict(zip(_KEYS[1:], ("~P2", "~M2", "~C4", "~C5", "~R3", "~P3"), strict=True)),
@@ -91,6 +99,8 @@ WIRING = {
     ),
     "colorlight_i9": Wiring(
         source="amaranth-boards, colorlight_i9_r7_2.py; muselab's ulx3s_v20_segpdi.lpf has the channels of gpdi",
+        chip="LFE5U-45F-6BG381C",
+        loader="colorlight-i9",
         clock="P3",
         mhz=25,
         pressed=dict(zip(_KEYS[1:], ("~A18", "~A19", "~C17", "~B18", "~B20", "~F20"), strict=True)),
@@ -105,6 +115,8 @@ WIRING = {
     ),
     "tang_nano_20k": Wiring(
         source="Sipeed's TangNano-20K-example, hdmi/src/hdmi.cst and uart/src/top.cst; Apicula's tangnano20k.cst",
+        chip="GW2AR-LV18QN88C8/I7",
+        loader="tangnano20k",
         clock="4",
         mhz=27,
         pressed={"forward": "88", "back": "87"},
@@ -120,6 +132,8 @@ WIRING = {
     ),
     "icebreaker": Wiring(
         source="LiteX-Boards, icebreaker.py: pmod connectors, dvi_pmod and break_off_pmod",
+        chip="iCE40UP5K-SG48",
+        loader="ice40_generic",
         clock="35",
         mhz=12,
         pressed={"reset": "~10", "left": "20", "forward": "19", "right": "18"},
@@ -131,6 +145,7 @@ WIRING = {
     ),
     "de2": Wiring(
         source="Altera's Tcl board package for Quartus, qboard; the DE2's manual: keys are low while pressed",
+        chip="EP2C35F672C6",
         clock="N2",
         mhz=50,
         pressed=dict(zip(_KEYS, ("P25", "N25", "N26", "~P23", "~N23", "~W26", "~G26"), strict=True)),
@@ -142,6 +157,7 @@ WIRING = {
     ),
     "de2_115": Wiring(
         source="projects of Terasic's System Builder; the DE2-115's manual: keys are low while pressed",
+        chip="EP4CE115F29C7",
         clock="Y2",
         mhz=50,
         pressed=dict(zip(_KEYS, ("AC27", "AB28", "AC28", "~N21", "~M21", "~R24", "~M23"), strict=True)),
@@ -156,6 +172,7 @@ WIRING = {
     ),
     "de1_soc": Wiring(
         source="MiSTer's and System Builder's qsf files; LiteX-Boards, terasic_de1soc.py: KEY and SW",
+        chip="5CSEMA5F31C6",
         clock="AF14",
         mhz=50,
         pressed=dict(zip(_KEYS, ("AF9", "AB12", "AC12", "~W15", "~AA15", "~Y16", "~AA14"), strict=True)),
@@ -167,6 +184,7 @@ WIRING = {
     ),
     "de10_lite": Wiring(
         source="LiteX-Boards, terasic_de10lite.py; System Builder's qsf files: standards",
+        chip="10M50DAF484C7G",
         clock="P11",
         mhz=50,
         pressed=dict(zip(_KEYS, ("D12", "C10", "C11", "A12", "C12", "~A7", "~B8"), strict=True)),

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Callable
 from itertools import pairwise
@@ -290,6 +291,35 @@ def check(case: Case, files: list[Path]) -> None:
 @pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(str(part) for part in case if part))
 def test_each_pin_has_its_role(case, project):
     check(case, project(case))
+
+
+OPTIONS = {
+    "ecp5": (r"LFE5U-(\d+)F-(\d)BG(\d+)C", r"--\1k --package CABGA\3 --speed \2"),
+    "ice40": ("iCE40UP5K-SG48", "--up5k --package sg48"),
+    "gowin": ("GW2AR.*", r"--device \g<0> --vopt family=GW2A-18C"),
+}
+"""Chips' order codes and nextpnr's options for them, by flow."""
+
+SIZES = {
+    "EP2C35F672C6": (33_216, 70, "cycloneive"),
+    "EP4CE115F29C7": (114_480, 532, "cycloneive"),
+    "5CSEMA5F31C6": (32_070, 3 * 87, "cyclonev"),
+    "10M50DAF484C7G": (49_760, 288, "cycloneive"),
+}
+"""Logic elements or, with Yosys's `cyclonev`, ALMs; and multipliers of 9 bits, of which a DSP block has three. Numbers
+are those of Quartus's reports."""
+
+
+@pytest.mark.parametrize("name", board_names(Board))
+def test_the_chip_is_the_boards_own(name):
+    """Tools get the chip that the second source has; `test_a_small_bitstream` checks its size for open tools."""
+    board, wiring = find_board(name, Board), wiring_of(name)
+    assert board.chip == wiring.chip
+    if isinstance(board, OpenBoard):
+        assert " ".join(board.options) == re.sub(*OPTIONS[board.flow], wiring.chip)
+        assert board.loader == ("--board", wiring.loader)
+    else:
+        assert (board.elements, board.multipliers, board.counted_as) == SIZES[wiring.chip]
 
 
 ICE, GAME, ULX3S, TANG, DE2, LITE = (
