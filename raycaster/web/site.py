@@ -36,7 +36,7 @@ from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
 from raycaster.registers import register_map
 from raycaster.rtl.engines import ENGINES, SEED, SPAN
 from raycaster.runs.jobs import processes, run_jobs
-from raycaster.runs.outcomes import RESULTS, kept_outcome
+from raycaster.runs.outcomes import RESULTS, kept_outcome, kept_outcomes
 from raycaster.scene import CELLS, COMPLAINTS, PATTERN_KEYS, PATTERNS, Scene, load_scene, packaged_scenes
 from raycaster.screens import LIST_SCREENS, SCREENS
 from raycaster.sim.simulator import SimulationError
@@ -63,7 +63,8 @@ BROWSER_KEYS = {name: f"arrow{name}" for name in ("left", "right", "up", "down")
 
 
 _ROUTED = re.compile(
-    rf"{SPAN.facts.name}-(?P<screen>[a-z]+).*-s(?P<scale>\d+)-.*-l(?P<list>\d+)-c\d+(?P<features>(-({'|'.join(FEATURES)}))*)"
+    rf"{SPAN.facts.name}-(?P<screen>[a-z]+).*-s(?P<scale>\d+)-.*-l(?P<list>\d+)-c\d+"
+    rf"(?P<features>(-({'|'.join(FEATURES)}))*)(?P<serial>-uart\d*)?"
 )
 """Name of a design that draws whole frames of any scene."""
 
@@ -190,9 +191,8 @@ def _settings(models: Sequence[Model], *, test: bool) -> dict[str, Any]:
 def _cost(path: Path = RESULTS / "features.json") -> dict[str, Any] | None:
     """Return the cells of `ROOM_DESIGNS` on an ECP5, as last measured, and what the open boards have.
 
-    `runs` of a board are the entries of the longest list for which it has memory, by design. `routed` is the design
-    without a bus for any scene that was placed and routed for the board, if there is one. None where no figures are
-    kept, as in an installed program.
+    `runs` of a board are the entries of the longest list for which it has memory, by design. `routed` are the designs
+    for any scene that were placed and routed for boards. None where no figures are kept, as in an installed program.
     """
     if not path.exists():
         return None
@@ -202,26 +202,27 @@ def _cost(path: Path = RESULTS / "features.json") -> dict[str, Any] | None:
         name: {key: row[key] for key in ("tables", "registers", "multipliers")}
         for name, options in ROOM_DESIGNS.items() for row in counted if row["options"] == options
     }  # fmt: skip
-    routed = {}
-    for kept_path in sorted(path.parent.glob("bitstream-*.json")):
-        figures = kept_outcome(kept_path).figures
+    boards = {name: find_board(name, OpenBoard) for name in board_names(OpenBoard)}
+    titles = {name: board.title.partition(",")[0] for name, board in boards.items()}
+    routed = []
+    for figures in (one.figures for one in kept_outcomes(path.with_name("bitstreams.json"))):
         # A module that was routed alone has no board.
         if "board" in figures and (design := _ROUTED.fullmatch(figures["configuration"])):
             screen = LIST_SCREENS[design["screen"], figures["rows"]].scaled(int(design["scale"]))
-            routed[figures["board"]] = {
-                "features": design["features"].split("-")[1:], "columns": screen.columns, "runs": int(design["list"]),
+            routed.append({
+                "title": titles[figures["board"]], "serial": bool(design["serial"]),
+                "features": design["features"].split("-")[1:], "runs": int(design["list"]),
+                "columns": screen.columns, "rows": screen.rows,
                 "cells": figures["cells"][figures["kinds"]["logic"]],
                 **{name: figures[name] for name in ("rectangles", "reflections")},
-            }  # fmt: skip
-    boards = [find_board(name, OpenBoard) for name in board_names(OpenBoard)]
+            })  # fmt: skip
     designs = {name: configure(engine=SPAN.facts.name, **options) for name, options in ROOM_DESIGNS.items()}
-    return {"date": kept.date, "rooms": rooms, "boards": [
+    return {"date": kept.date, "rooms": rooms, "routed": routed, "boards": [
         {
-            "title": board.title.partition(",")[0], "elements": board.elements, "multipliers": board.multipliers,
-            "runs": {name: largest_list(board, config) for name, config in designs.items()},
-            "routed": routed.get(board.name),
+            "title": titles[name], "elements": board.elements, "multipliers": board.multipliers,
+            "runs": {room: largest_list(board, config) for room, config in designs.items()},
         }
-        for board in boards
+        for name, board in boards.items()
     ]}  # fmt: skip
 
 

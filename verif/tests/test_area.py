@@ -17,6 +17,7 @@ from raycaster.errors import UserError
 from raycaster.fpga import area, flows
 from raycaster.fpga.board import Board, QuartusBoard, board_names, find_board
 from raycaster.fpga.cells import FAMILIES, Area, measure, measure_modules
+from raycaster.runs.outcomes import kept_outcome
 
 SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True, culling=False)
 
@@ -90,7 +91,7 @@ def test_fixed_sets_of_designs(tmp_path, monkeypatch, capsys, names_for_digests)
     monkeypatch.setattr(area, "measure", count)
     path = tmp_path / "features.json"
     area.main(["--features", "--output", str(tmp_path / "area"), "--keep", str(path)])
-    designs = json.loads(path.read_text())["figures"]["designs"]
+    designs = kept_outcome(path).figures["designs"]
     letters = {name[0]: size for name, size in sizes.items()}
     featured = [row for row in designs if row["options"].keys() <= sizes.keys()]
     assert [(row["engine"], "".join(name[0] for name in row["options"]), row["tables"]) for row in featured] == [
@@ -164,7 +165,7 @@ def test_a_module_is_routed_alone(tmp_path, monkeypatch, capsys):
     assert again == ()
     assert {"--85k", f"{TOP}.json"} <= {*command}
     assert [command[command.index(name) + 1] for name in ("--freq", "--seed")] == ["51.5", "3"]
-    figures = json.loads(kept.read_text())["figures"]
+    figures = kept_outcome(kept).figures
     assert figures["cells"][figures["kinds"]["logic"]] == [9, 10]
     assert figures["clocks"] == {"clk": [77.01, 51.5]}
     assert figures["path"] == [[0.52, "count"], [1.23, "rect_mem_i.index"]]
@@ -184,7 +185,7 @@ def test_the_command(tmp_path):
     options += ("--allow-underrun", "--culling", "0", "--family", "ecp5", "--keep", "area.json")
     done = called("area", *options, cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "area: usually 3 min\n")
-    [counted] = json.loads((tmp_path / "area.json").read_text())["figures"]["families"].values()
+    [counted] = kept_outcome(tmp_path / "area.json").figures["families"].values()
     assert counted["multipliers"] == 4
     assert re.search(rf"ULX3S.* LFE5U-85F-6BG381C +83,640 +{counted['elements']:,} +\d+% +4 of 156", done.stdout)
     boards = [find_board(name, Board) for name in board_names(Board)]

@@ -18,6 +18,7 @@ from conftest import BUILD, ROOT, called, make
 from raycaster.design.options import CommandParser
 from raycaster.docs import drawings, facts, pages, proofs, spans, tables, timing
 from raycaster.docs.hdl import parts
+from raycaster.errors import UserError
 from raycaster.golden.exact import ExactModel
 from raycaster.rtl import engine
 from raycaster.runs import outcomes
@@ -115,17 +116,28 @@ def test_a_page_by_itself(page: Path):
 
 
 def test_figures_are_kept(tmp_path: Path, monkeypatch):
-    """Figures are kept with the command, the date and the digest of the Verilog; without `--keep`, nothing is."""
+    """Figures are kept once for each command, with any seed, with the digest of the Verilog; not without `--keep`."""
     monkeypatch.chdir(tmp_path)
     parser = CommandParser("area", "Cells.", "")
     outcomes.add_keep_option(parser)
+    for option in ("--seed", "--units"):
+        parser.add_argument(option)
     outcomes.keep(parser.parse_args([]), {"cells": 3}, lambda arguments: "12ab")
     assert not list(tmp_path.iterdir())
     path = Path("results/one.json")
-    outcomes.keep(parser.parse_args([f"KEEP={path}"]), {"cells": 3}, lambda arguments: "12ab", left_out="clocks")
-    kept = outcomes.kept_outcome(path)
-    assert (kept.command, kept.figures, kept.verilog) == ("raycaster area", {"cells": 3}, "12ab")
-    assert kept.tools["myhdl"] == importlib.metadata.version("myhdl")
+    for cells, words in enumerate(["", "UNITS=2", "SEED=3", "UNITS=2 SEED=4"]):
+        arguments = parser.parse_args([f"KEEP={path}", *words.split()])
+        outcomes.keep(arguments, {"cells": cells}, lambda arguments: "12ab", left_out="clocks")
+    first, second = outcomes.kept_outcomes(path)
+    assert (first.command, first.figures, first.verilog) == ("raycaster area --seed 3", {"cells": 2}, "12ab")
+    assert (second.command, second.figures) == ("raycaster area --units 2 --seed 4", {"cells": 3})
+    assert first.tools["myhdl"] == importlib.metadata.version("myhdl")
+    with pytest.raises(UserError, match="expected one outcome, got 2"):
+        outcomes.kept_outcome(path)
+    for other in ("<<<<<<< HEAD\n[]", '{"cells": 3}', '[{"cells": 3}]'):
+        path.write_text(other)
+        with pytest.raises(UserError, match="expected a list of kept figures"):
+            parser.parse_args([f"KEEP={path}"])
 
 
 def test_pages(tmp_path: Path):

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
@@ -12,6 +11,7 @@ import pytest
 import z3
 from conftest import faulty, refused
 
+from raycaster.runs.outcomes import kept_outcome
 from raycaster.verif.formal.faults import model_with_faults, outcome
 from raycaster.verif.formal.lemmas import LEMMAS, Lemma, prove_lemma
 from raycaster.verif.formal.properties import PROPERTIES
@@ -65,7 +65,7 @@ def test_kept_proofs_are_not_repeated(output, monkeypatch, names_for_digests):
 
     def outcome(*options: str) -> tuple[int, dict]:
         code = main(["--jobs", "1", "--output", str(output / "proofs"), "--keep", str(kept), *options])
-        return code, json.loads(kept.read_text())["figures"]
+        return code, kept_outcome(kept).figures
 
     label = f"host-transfers, {HOST.label}"
     assert outcome() == (0, {"proved": 1, "proofs": 1, "properties": 1, "properties_proved": 1, "lemmas": 0,

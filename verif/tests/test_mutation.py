@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Callable
 from functools import partial
@@ -18,6 +17,7 @@ from raycaster.hdl.signals import bit, reset_signal, unsigned
 from raycaster.rtl.common.interfaces import SceneBus
 from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.scene.scene_word import scene_word
+from raycaster.runs.outcomes import kept_outcome
 from raycaster.verif.mutation.mutate import Leaf as LeafTest
 from raycaster.verif.mutation.mutate import (
     MutationError,
@@ -84,7 +84,7 @@ def test_the_command_reports(tmp_path, capsys, monkeypatch, names_for_digests):
         main(["--module", "ray_mem", "--mutants", "20", "--jobs", "1", "--build", "build", "--keep", "kept.json"]) == 0
     )
     assert re.search(r"ray_mem +\d+ +\d+ +\d+", capsys.readouterr().out)
-    kept = json.loads((tmp_path / "kept.json").read_text())["figures"]
+    kept = kept_outcome(tmp_path / "kept.json").figures
     assert sum(kept["by_module"]["ray_mem"]) == kept["caught"] + kept["surviving"] == 20
     survivors = (tmp_path / "build" / "survivors.txt").read_text().splitlines()
     assert len(survivors) == kept["surviving"]

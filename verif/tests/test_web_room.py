@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import tomllib
 from dataclasses import replace
 from typing import Any
@@ -19,7 +18,7 @@ from raycaster.golden.frames import scene_cycles
 from raycaster.program import scene_words
 from raycaster.registers import register_map
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word, table_word, version_word
-from raycaster.runs.outcomes import RESULTS
+from raycaster.runs.outcomes import RESULTS, kept_outcome, kept_outcomes
 from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.serial_frames import LEAD, access, framed, writes
 
@@ -231,16 +230,22 @@ def test_clocks_are_the_hardware_s(room):
     assert state["clocks"] == scene_cycles(scene, CONFIG)
     cost = room.text_content("#room-cost")
     assert f"{25e6 / state['clocks']:.0f} at 25 MHz" in cost
-    kept = json.loads((RESULTS / "features.json").read_text())["figures"]["designs"]
+    kept = kept_outcome(RESULTS / "features.json").figures["designs"]
     [cells] = [row for row in kept if row["engine"] == "span" and row["options"] == ROOM_DESIGNS["plain"]]
     assert f"{cells['tables']:,} look-up tables" in cost
     assert "Boards with room for it and for this frame: Colorlight i9, " in cost
-    routed = json.loads((RESULTS / "bitstream-icebreaker-span.json").read_text())["figures"]
-    used, cells = routed["cells"]["ICESTORM_LC"]
-    assert f"{routed['title']} draws it too, with {used:,} of {cells:,} logic cells." in cost
+    kept = [one.figures for one in kept_outcomes(RESULTS / "bitstreams.json")]
+    routed = {one["reflections"]: one["cells"]["ICESTORM_LC"] for one in kept if one.get("board") == "icebreaker"}
+    cost = "cellsText('plain', RayCaster.state.room, { columns: 320, rows: 240 }, RayCaster.room.scene)"
+    said = "iCEBreaker with its 12-bit DVI Pmod draws it too, with {:,} of {:,} logic cells"
+    text = room.evaluate(cost)
+    assert said.format(*routed[1]) + "." in text and said.format(*routed[0]) not in text
+    choose(room, "matte")
+    checked(room)
+    assert said.format(*routed[0]) + " and a serial port." in room.evaluate(cost)
     room.focus("#room-picture")
     room.keyboard.down("ArrowLeft")
-    room.wait_for_function("!find('room-cost').textContent.includes('iCEBreaker')")
+    room.wait_for_function(f"!{cost}.includes('iCEBreaker')")
     room.keyboard.up("ArrowLeft")
 
 

@@ -94,8 +94,8 @@ class Properties {
 }
 
 // Say what hardware for rooms like this one takes, and which boards have it.
-function cellsText(model, { runs, camera }, { columns }, { needs, reflections, rect }) {
-  const { rooms, boards, date } = RayCaster.cost ?? {};
+function cellsText(model, { runs, camera }, { columns, rows }, { needs, reflections, rect }) {
+  const { rooms, boards, routed, date } = RayCaster.cost ?? {};
   const { design: name } = RayCaster.walk.models.find(({ name }) => name === model), cells = rooms?.[name];
   if (!cells) return "";
   const titles = boards.filter(
@@ -103,12 +103,12 @@ function cellsText(model, { runs, camera }, { columns }, { needs, reflections, r
       cells.tables <= FULLEST * elements && cells.multipliers <= multipliers && runs <= most[name],
   ).map(({ title }) => title);
   const turn = JSON.stringify(camera.basis) !== JSON.stringify(RayCasterScene.basis(0, 0, 0));
-  const able = boards.filter(({ title, routed }) => routed && !titles.includes(title) && columns <= routed.columns &&
-    runs <= routed.runs && rect.length <= routed.rectangles && reflections <= routed.reflections &&
-    Object.entries({ ...needs, turn }).every(([look, isNeeded]) => !isNeeded || routed.features.includes(look)));
-  const others = able.map(({ title, routed: { cells: [used, all] } }) =>
-    ` The design that was placed and routed for the ${title} draws it too, with ${used.toLocaleString("en")} of ` +
-    `${counted(all, "logic cell")}.`);
+  const able = routed.filter((one) => !titles.includes(one.title) && columns === one.columns && rows === one.rows &&
+    runs <= one.runs && rect.length <= one.rectangles && reflections <= one.reflections &&
+    Object.entries({ ...needs, turn }).every(([look, isNeeded]) => !isNeeded || one.features.includes(look)));
+  const others = able.map(({ title, serial, cells: [used, all] }) =>
+    ` A design that was placed and routed for the ${title} draws it too, with ${used.toLocaleString("en")} of ` +
+    `${counted(all, "logic cell")}${serial ? " and a serial port" : ""}.`);
   return ` The ${name} design for 640 x 480 monitors takes ${counted(cells.tables, "look-up table")}, ` +
     `${counted(cells.registers, "register")} and ${counted(cells.multipliers, "multiplier")} of an ECP5 (counted before ` +
     `placing, ${date}). Boards with room for it and for this frame: ${titles.join(", ") || "none of those described here"}.` +
