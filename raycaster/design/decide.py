@@ -53,22 +53,22 @@ def decided(options: Options) -> Configuration:
     """Decide everything that the user left open.
 
     Raises:
-        ValueError: no such design is possible; the text is `option: why, and what to do instead`.
+        ConfigurationError: no such design is possible; the text is `option: why, and what to do instead`.
     """
     engine, fixed = ENGINES[options.engine], options.fixed
     if fixed is not None and len(fixed.passes) != options.reflections + 1:
-        raise ValueError(f"fixed: is for {len(fixed.passes) - 1} reflections, not {options.reflections}")
+        raise ConfigurationError(f"fixed: is for {len(fixed.passes) - 1} reflections, not {options.reflections}")
     rows = _rows(options, engine)
     scale = _scale(options, engine, rows)
     for feature, reason in engine.facts.lacks.items():
         if getattr(options, feature):
-            raise ValueError(f"{feature}: {reason}; {_instead(options)}")
+            raise ConfigurationError(f"{feature}: {reason}; {_instead(options)}")
     if options.pixels > 1 and not engine.facts.whole_frames:
-        raise ValueError(
+        raise ConfigurationError(
             f"pixels: the {options.engine} engine has 1 per clock, not {options.pixels}; {_instead(options)}"
         )
     if options.rectangles > engine.facts.rectangles:
-        raise ValueError(
+        raise ConfigurationError(
             f"rectangles: the {options.engine} engine holds at most {engine.facts.rectangles}, not "
             f"{options.rectangles}; {_instead(options)}"
         )
@@ -91,7 +91,9 @@ def decided(options: Options) -> Configuration:
     columns = config.screen_geometry.columns
     if columns % config.units and not engine.facts.whole_frames:
         divisors = ", ".join(str(n) for n in range(1, columns + 1) if columns % n == 0)
-        raise ValueError(f"units: {config.units} does not divide the {columns} columns; choose one of {divisors}")
+        raise ConfigurationError(
+            f"units: {config.units} does not divide the {columns} columns; choose one of {divisors}"
+        )
     config = engine.sized(config, options)
     engine.check(config)
     return config
@@ -128,11 +130,13 @@ def _instead(options: Options) -> str:
 def _check_baud(config: Configuration) -> None:
     if not BUSES[config.bus].serial:
         if config.baud != USUAL_BAUD:
-            raise ValueError(f"baud: only a serial bus has a rate; choose {as_typed('bus', 'uart')}, or leave it out")
+            raise ConfigurationError(
+                f"baud: only a serial bus has a rate; choose {as_typed('bus', 'uart')}, or leave it out"
+            )
         return
     clock_hz = config.screen_geometry.clock_hz
     if config.baud > most_baud(clock_hz):
-        raise ValueError(
+        raise ConfigurationError(
             f"baud: the design's clock of {clock_hz / 1e6:g} MHz makes at most {most_baud(clock_hz)} within "
             f"{RATE_ERROR:.1%}, not {config.baud}"
         )
@@ -141,14 +145,16 @@ def _check_baud(config: Configuration) -> None:
 def _rows(options: Options, engine: Engine) -> int:
     allowed = [rows for screen, rows in engine.facts.screens if screen == options.screen]
     if not allowed:
-        raise ValueError(f"screen: the {options.engine} engine does not have {options.screen}; {_instead(options)}")
+        raise ConfigurationError(
+            f"screen: the {options.engine} engine does not have {options.screen}; {_instead(options)}"
+        )
     if options.rows is None:
         return allowed[0]
     if options.rows not in allowed:
         choices = ", ".join(map(str, allowed))
         known = any(_matches(place, options) for other in ENGINES.values() for place in other.facts.screens)
         hint = f"; {_instead(options)}" if known else ""
-        raise ValueError(
+        raise ConfigurationError(
             f"rows: {options.engine} has {choices} rows on screen {options.screen}, not {options.rows}{hint}"
         )
     return options.rows
@@ -163,7 +169,9 @@ def _scale(options: Options, engine: Engine, rows: int) -> int:
         others = (other for other in ENGINES.values() if (options.screen, rows) in other.facts.screens)
         known = any(options.scale in other.scales(other.facts.screens[options.screen, rows]) for other in others)
         hint = f"; {_instead(options)}" if known else ""
-        raise ValueError(f"scale: the {options.engine} engine shows {rows} rows at {scales}, not {options.scale}{hint}")
+        raise ConfigurationError(
+            f"scale: the {options.engine} engine shows {rows} rows at {scales}, not {options.scale}{hint}"
+        )
     return options.scale
 
 
@@ -174,8 +182,7 @@ def configure(**values: Any) -> Configuration:
         ConfigurationError: one line that names the option, what was given and what was expected.
     """
     try:
-        return decided(Choice(**values))
+        options = Choice(**values)
     except ValidationError as error:
         raise ConfigurationError(refusal(error.errors(), depth=1)) from None
-    except ValueError as error:
-        raise ConfigurationError(str(error)) from None
+    return decided(options)

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from raycaster.complaints import as_typed
-from raycaster.configuration import Configuration, Options
+from raycaster.configuration import Configuration, ConfigurationError, Options
 from raycaster.rtl.engine.engine import Engine
 
 GROUP_OVERHEAD = 4
@@ -40,10 +40,12 @@ class LineBufferedEngine(Engine):
         """Refuse lists, and culling in a fixed scene."""
         super().refuse(options)
         if options.list:
-            raise ValueError(f"list: the {self.facts.name} engine has no lists of runs; leave out {options.list}")
+            raise ConfigurationError(
+                f"list: the {self.facts.name} engine has no lists of runs; leave out {options.list}"
+            )
         if options.culling and options.fixed is not None:
             either = f"{as_typed('culling')} or {as_typed('fix')}"
-            raise ValueError(f"culling: does not apply to a fixed scene; leave out {either}")
+            raise ConfigurationError(f"culling: does not apply to a fixed scene; leave out {either}")
 
     @abstractmethod
     def rect_cycles(self, config: Configuration) -> int:
@@ -75,7 +77,7 @@ class LineBufferedEngine(Engine):
         """Compare a group's cycles with the row budget."""
         if config.allow_underrun or self.fits(config):
             return
-        raise ValueError(
+        raise ConfigurationError(
             f"row budget: a group of {config.units} columns takes {self.group_cycles(config)} cycles with "
             f"{config.rectangles} rectangles, {config.most_reflections} reflections and {self.rect_cycles(config)} "
             f"cycles per rectangle, but a row leaves it {config.group_budget} (less than "

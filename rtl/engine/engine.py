@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from raycaster.configuration import Configuration, Facts, Options
+from raycaster.configuration import Configuration, ConfigurationError, Facts, Options
 from raycaster.screens import Screen
 
 
@@ -31,17 +31,19 @@ class Engine(ABC):
         """Refuse options that the engine does not support.
 
         Raises:
-            ValueError: an option is refused; the text is `option: why, and what to do instead`.
+            ConfigurationError: an option is refused; the text is `option: why, and what to do instead`.
         """
-        if not self.facts.divides:
-            if options.fraction_bits:
-                raise ValueError(f"fraction_bits: the {self.facts.name} engine has none, not {options.fraction_bits}")
-            if options.rounding != "truncate":
-                raise ValueError(f"rounding: the {self.facts.name} engine does not round; leave out {options.rounding}")
-            if options.divider_bits not in ("auto", 0):
-                raise ValueError(
-                    f"divider_bits: the {self.facts.name} engine has no divider; leave out {options.divider_bits}"
-                )
+        name = self.facts.name
+        if self.facts.divides:
+            return
+        if options.fraction_bits:
+            raise ConfigurationError(f"fraction_bits: the {name} engine has none, not {options.fraction_bits}")
+        if options.rounding != "truncate":
+            raise ConfigurationError(f"rounding: the {name} engine does not round; leave out {options.rounding}")
+        if options.divider_bits not in ("auto", 0):
+            raise ConfigurationError(
+                f"divider_bits: the {name} engine has no divider; leave out {options.divider_bits}"
+            )
 
     @abstractmethod
     def sized(self, config: Configuration, options: Options) -> Configuration:
@@ -52,7 +54,7 @@ class Engine(ABC):
             options: the user's options.
 
         Raises:
-            ValueError: the user's options are not possible.
+            ConfigurationError: the user's options are not possible.
         """
 
     @abstractmethod
@@ -68,5 +70,5 @@ class Engine(ABC):
         """Refuse a design that is too slow for its screen.
 
         Raises:
-            ValueError: the design is too slow; the text says by how much, and what to do.
+            ConfigurationError: the design is too slow; the text says by how much, and what to do.
         """

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from raycaster.configuration import Configuration, Facts, Options
+from raycaster.configuration import Configuration, ConfigurationError, Facts, Options
 from raycaster.rtl.buffered.engine import Blocks, LineBufferedEngine
 from raycaster.screens import SCREENS
 
@@ -33,7 +33,7 @@ class Seed(LineBufferedEngine):
         """Take 32 units, or the fewest that a fixed scene needs, and the smallest divider that meets the row budget."""
         given = options.divider_bits
         if given not in ("auto", *UNIT_CELLS):
-            raise ValueError(f"divider_bits: must be auto, 1, 2 or 3, not {given}")
+            raise ConfigurationError(f"divider_bits: must be auto, 1, 2 or 3, not {given}")
         designs = [replace(config, divider_bits=bits) for bits in UNIT_CELLS if given in ("auto", bits)]
         if options.units is None and config.fixed is not None:
             # A faster divider makes a unit larger, but there may be fewer of them.

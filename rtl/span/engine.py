@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from raycaster.complaints import as_typed
-from raycaster.configuration import MOST_RECTANGLES, Configuration, Facts, Options
+from raycaster.configuration import MOST_RECTANGLES, Configuration, ConfigurationError, Facts, Options
 from raycaster.rtl.engine.engine import Engine
 from raycaster.screens import LIST_SCREENS, Screen
 
@@ -34,7 +34,7 @@ class Span(Engine):
         """Refuse culling."""
         super().refuse(options)
         if options.culling:
-            raise ValueError("culling: the span engine has no groups of columns; leave it out")
+            raise ConfigurationError("culling: the span engine has no groups of columns; leave it out")
 
     def sized(self, config: Configuration, options: Options) -> Configuration:
         """Take one unit, and lists that hold the packaged scenes."""
@@ -42,7 +42,9 @@ class Span(Engine):
             _check_pairs(config)
         screen = config.screen_geometry
         if options.list is not None and options.list < screen.rows:
-            raise ValueError(f"list: {options.list} is less than a run for each of the {screen.rows} rows; take more")
+            raise ConfigurationError(
+                f"list: {options.list} is less than a run for each of the {screen.rows} rows; take more"
+            )
         entries = screen.rows * min(RUNS_PER_ROW, screen.columns) if options.list is None else options.list
         return replace(config, list=entries)
 
@@ -64,18 +66,20 @@ def _check_pairs(config: Configuration) -> None:
     """Refuse two pixels per clock unless they are neighbouring columns and all sync edges are between clocks.
 
     Raises:
-        ValueError: the screen has no such pairs.
+        ConfigurationError: the screen has no such pairs.
     """
     screen = config.whole_screen
     if screen.doubling != 1:
         finest = config.scale * screen.doubling
-        raise ValueError(
+        raise ConfigurationError(
             f"pixels: 2 per clock need one column per pixel of the monitor, {as_typed('scale', finest)}, not "
             f"{config.scale}"
         )
     line = screen.horizontal
     if any(part % 2 for part in (line.visible, line.front, line.sync, line.back)):
-        raise ValueError(f"pixels: 2 per clock need an even width and blanking, which the {config.screen} screen lacks")
+        raise ConfigurationError(
+            f"pixels: 2 per clock need an even width and blanking, which the {config.screen} screen lacks"
+        )
 
 
 SPAN = Span(
