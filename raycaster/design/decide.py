@@ -60,18 +60,8 @@ def decided(options: Options) -> Configuration:
         raise ConfigurationError(f"fixed: is for {len(fixed.passes) - 1} reflections, not {options.reflections}")
     rows = _rows(options, engine)
     scale = _scale(options, engine, rows)
-    for feature, reason in engine.facts.lacks.items():
-        if getattr(options, feature):
-            raise ConfigurationError(f"{feature}: {reason}; {_instead(options)}")
-    if options.pixels > 1 and not engine.facts.whole_frames:
-        raise ConfigurationError(
-            f"pixels: the {options.engine} engine has 1 per clock, not {options.pixels}; {_instead(options)}"
-        )
-    if options.rectangles > engine.facts.rectangles:
-        raise ConfigurationError(
-            f"rectangles: the {options.engine} engine holds at most {engine.facts.rectangles}, not "
-            f"{options.rectangles}; {_instead(options)}"
-        )
+    for _, complaint in _lacking(engine, options):
+        raise ConfigurationError(f"{complaint}; {_instead(options)}")
     engine.refuse(options)
     # Culling shortens the long slots of a division; a fixed scene leaves out more.
     culls = engine.facts.divides and fixed is None
@@ -99,13 +89,21 @@ def decided(options: Options) -> Configuration:
     return config
 
 
-def _lacking(engine: Engine, options: Options) -> Iterator[str]:
-    """Yield the wanted features and the screen, in words, that an engine does not have."""
-    yield from (FEATURES[name] for name in engine.facts.lacks if getattr(options, name))
-    if options.pixels > 1 and not engine.facts.whole_frames:
-        yield f"{options.pixels} pixels per clock"
-    if options.rectangles > engine.facts.rectangles:
-        yield f"{options.rectangles} rectangles"
+def _lacking(engine: Engine, options: Options) -> Iterator[tuple[str, str]]:
+    """Yield what is wanted and an engine does not have, except the screen: in a few words, and as a complaint."""
+    facts, pixels, rectangles = engine.facts, options.pixels, options.rectangles
+    for feature, reason in facts.lacks.items():
+        if getattr(options, feature):
+            yield FEATURES[feature], f"{feature}: {reason}"
+    if pixels > 1 and not facts.whole_frames:
+        yield f"{pixels} pixels per clock", f"pixels: the {facts.name} engine has 1 per clock, not {pixels}"
+    if rectangles > facts.rectangles:
+        complaint = f"rectangles: the {facts.name} engine holds at most {facts.rectangles}, not {rectangles}"
+        yield f"{rectangles} rectangles", complaint
+
+
+def _lacking_screen(engine: Engine, options: Options) -> Iterator[str]:
+    """Yield the wanted screen or scale, in words, if an engine does not have it."""
     screens = [screen for place, screen in engine.facts.screens.items() if _matches(place, options)]
     if not screens:
         yield f"the {options.screen} screen" if options.rows is None else f"{options.rows} rows of {options.screen}"
@@ -119,7 +117,10 @@ def _matches(place: tuple[str, int], options: Options) -> bool:
 
 def _instead(options: Options) -> str:
     """Return the engines with all that is wanted or, if there are none, what each of them lacks."""
-    lacking = {name: list(_lacking(engine, options)) for name, engine in ENGINES.items()}
+    lacking = {
+        name: [*(words for words, _ in _lacking(engine, options)), *_lacking_screen(engine, options)]
+        for name, engine in ENGINES.items()
+    }
     able = [as_typed("engine", name) for name, lacks in lacking.items() if not lacks]
     if able:
         return f"choose {' or '.join(able)}"
