@@ -24,8 +24,6 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     been written since reads 0, and is not usable.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         bus: `SceneBus`; input.
         readback: unsigned, 32 bits; output, the shadow's word at bus.address, 0 if there is none. Valid in the cycle
             after bus.access.
@@ -33,7 +31,6 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
             after a write on.
         rects: `Rects`; reads index and fetch, drives usable and rect. rect is don't care if the rectangle is not
             usable.
-        config: the design.
     """
     count = config.rectangles
     table_slot = CORNER.address // 4

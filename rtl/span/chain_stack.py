@@ -14,7 +14,6 @@ def chain_stack(clk, push, level, kept, frame, config: Configuration):
     """Hold a `Frame` for each level, the number of mirrors of its chain.
 
     Args:
-        clk: the clock.
         push: strobe; stores kept at this level.
         level: unsigned, `level_bits` bits; 0 to the number of reflections, less than that with push. Not read with one
             reflection.

@@ -29,7 +29,6 @@ def clipper(clk, reset, chain, opened, met, asks, answer, append, entry, idle, c
     the rectangle, and one whose sign changes narrows its columns.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset, which forgets all rectangles.
         chain: `Chain`; start and stop are read, constant while not idle, and in the cycle before.
         opened: strobe; the answers of a rectangle follow, the last one marked by answer.last, after those of the one
@@ -40,7 +39,6 @@ def clipper(clk, reset, chain, opened, met, asks, answer, append, entry, idle, c
         append: output strobe; the rectangle is met in some columns.
         entry: output `Entry`; valid with append.
         idle: output flag; all rectangles have been appended or rejected.
-        config: the design.
     """
     width, cycles, count = column_bits(config), division_cycles(config), places(config)
     flags = 4

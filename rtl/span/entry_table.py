@@ -14,7 +14,6 @@ def entry_table(clk, level, shadows, append, number, entry, read, place, stored,
     """Hold a table of entries for each level, the number of mirrors of a chain.
 
     Args:
-        clk: the clock.
         level: unsigned, `level_bits` bits; the level that is written or read.
         shadows: flag, read with `config.light`; the table of what shades the level's surface, instead of that of its
             chain.
@@ -24,7 +23,6 @@ def entry_table(clk, level, shadows, append, number, entry, read, place, stored,
         read: strobe; reads the entry at place.
         place: unsigned, `index_bits` bits; read with the strobe of that name.
         stored: output `Entry`; valid from the cycle after read up to the next read.
-        config: the design.
     """
     index_width = index_bits(config)
     leveled = config.most_reflections > 0

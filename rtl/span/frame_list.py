@@ -25,8 +25,6 @@ def frame_list(
     its runs, so they never wait for ready.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         scan: `Scan`, as in `list_player`.
         run: flag of the live `Picture`; read in the cycle after take_scene.
         hold: flag; no row is dealt, as the units are not ready for this frame. Only with more than one unit.

@@ -27,8 +27,6 @@ def list_player(
     A line must begin at least eight cycles and the latency of a `list_memory` before its first pixel.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         scan: `Scan`, a cycle ahead of the pixels: with one clock per pixel, lead=1 of the `video_generator`.
         upper: flag; the upper list is drawn, and the lower one is in view. Changes only in the cycle after
             scan.start_screen.

@@ -21,7 +21,6 @@ def row_collector(
     ever, as they don't wait for it.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous, drops the frame.
         new_frame: strobe; a frame begins.
         offered: flag; head is the next run of the unit whose turn it is.

@@ -15,8 +15,6 @@ def row_place(clk, reset, scan, view_run, taken, restart, place, playing):
     runs take most of a cycle, so that they are counted in the cycle after.
 
     Args:
-        clk: the clock.
-        reset: synchronous, active high.
         scan: `Scan`; next_column is not read.
         view_run: flag; the list in view has a frame. Changes only in the cycle after scan.start_screen.
         taken: unsigned, 2 bits; entries that end in this cycle, 0 while the line is not visible.

@@ -40,7 +40,6 @@ def run_memory(clk, write, write_place, written, read, read_place, shown, places
     `CHOICES` banks, each so many have registers in front of them, too.
 
     Args:
-        clk: the clock.
         write: strobe; stores written.
         write_place: unsigned, below places; read with write.
         written: `ListEntry`; read with write.

@@ -18,7 +18,6 @@ def run_queue(
     A unit that starts a row only if there is room never waits for ready, so a row takes the cycles that it takes alone.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous, empties the queue.
         valid: flag; run is there.
         run: `ListEntry`; is taken in each cycle with valid and ready.

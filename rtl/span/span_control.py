@@ -27,7 +27,6 @@ def span_control(
     begins; a span has a second part if the winner is a corner in its first or last column only.
 
     Args:
-        clk: the clock.
         reset: flag; synchronous reset to idle.
         start: strobe; draws a row while idle.
         camera: `Camera`; its position is read, constant while a row is drawn.
@@ -66,7 +65,6 @@ def span_control(
             driven with reflections, otherwise it is 1.
         colour: unsigned output, 24 bits; the span's plain colour, valid with begin_paint.
         passed_on: unsigned output, `weight_bits` bits; the weight of what the winner mirrors, valid with push.
-        config: the design.
     """
     columns, width, mirrors = config.screen_geometry.columns, column_bits(config), config.most_reflections > 0
     weight_width = weight_bits(config)
