@@ -3,7 +3,6 @@
 
 from myhdl import Signal, always_comb, block, instances, intbv
 
-from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied
 from raycaster.hdl.verbs import assign
 from raycaster.registers import register_map
@@ -14,7 +13,7 @@ REGISTERS = register_map(1)
 
 
 @block
-def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
+def camera_mem(clk, reset, bus, readback, camera):
     """Hold the camera: a scene_word for the position, for each vector of its basis if it turns, and for the light.
 
     Args:
@@ -23,7 +22,8 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
             addresses.
         camera: `Camera` of the live scene; output.
     """
-    names = ("camera", *("forward", "right", "up") * config.turn, *("light",) * config.light)
+    turns, lit = camera.has("forward_x"), camera.has("light_x")
+    names = ("camera", *("forward", "right", "up") * turns, *("light",) * lit)
     registers = [REGISTERS[name] for name in names]
     selects = [bit() for _ in registers]
     shadows, lives = ([Signal(intbv(register.reset)[WORD_BITS:]) for register in registers] for _ in range(2))
@@ -47,7 +47,7 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
 
     decode = assign(select_position, lambda: bus.address == camera_address)
 
-    if config.light:
+    if lit:
         select_light, light_word = selects[-1], shadows[-1]
         light_address = tied(registers[-1].address, len(bus.address))
 
@@ -56,7 +56,7 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
     else:
         select_light, light_word = tied(0, 1), tied(0, WORD_BITS)
 
-    if config.turn:
+    if turns:
         select_forward, select_right, select_up = selects[1:4]
         forward_word, right_word, up_word = shadows[1:4]
         forward_address, right_address, up_address = (

@@ -71,7 +71,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
         )
         for i in range(count)
     ]  # fmt: skip
-    sorter = rect_sorter(latest, sorted_rect, config)
+    sorter = rect_sorter(latest, sorted_rect)
 
     # The table starts after the other registers.
     locate = assign(slot, lambda: bus.next_address[address_width:2] - table_slot)
@@ -139,7 +139,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
         elif bus.address[2:] == 2:
             mask_2.next = bus.mask
 
-    if config.patterns:
+    if mask.has("pattern"):
         select_pattern = assign(mask_3, lambda: bus.mask if bus.address[2:] == 3 else 0)
 
     whole_mask = mask.joined(corner_0=mask_0, corner_1=mask_1, surface=mask_2, pattern=mask_3)

@@ -3,7 +3,7 @@
 
 from myhdl import always_comb, block, instances
 
-from raycaster.configuration import COORDINATE_BITS, Configuration
+from raycaster.configuration import COORDINATE_BITS
 from raycaster.hdl.signals import unsigned
 from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import AXIS_BITS, KIND_BITS, MIRROR_BITS
@@ -11,7 +11,7 @@ from raycaster.scene import CELLS
 
 
 @block
-def rect_sorter(written, rect, config: Configuration):
+def rect_sorter(written, rect):
     """Find a rectangle's axis (the first coordinate that both corners share) and order its bounds. Combinational.
 
     Args:
@@ -49,10 +49,10 @@ def rect_sorter(written, rect, config: Configuration):
     choose_v_low = assign(v_low, lambda: y_low if axis == 2 else z_low)
     choose_v_high = assign(v_high, lambda: y_high if axis == 2 else z_high)
 
-    if config.materials:
+    if rect.has("mirror"):
         limit_mirror = assign(mirror, lambda: 4 if written.mirror > 4 else written.mirror)
 
-    if config.patterns:
+    if rect.has("kind"):
         # With a cell as large as the world, no cell is odd.
         drop_large_cells = assign(kind, lambda: 0 if written.cell >= cells else written.kind)
 

@@ -62,7 +62,7 @@ def intersection_finder(
         distance=unconnected(position_width), valid=v_valid, towards=unconnected(1), config=config,
     )  # fmt: skip
 
-    if config.patterns:
+    if offered.has("cell"):
         u_parity = cell_parity(value=u_value, size=offered.cell, odd=odd_u, config=config)
         v_parity = cell_parity(value=v_value, size=offered.cell, odd=odd_v, config=config)
 

@@ -49,7 +49,7 @@ def z_buffer(
             found_colour.next = colour
             found_point.word.next = point.word
 
-    if config.materials:
+    if offered.has("mirror"):
 
         @always(clk.posedge)
         def keep_mirror():

@@ -78,7 +78,7 @@ def half_lines(
 
     issuing, last = bit(), bit()
     number = unsigned(NUMBER_BITS)
-    mirrors = config.most_reflections > 0
+    mirrors = chain.has("mirrored")
     last_number = unsigned(NUMBER_BITS) if mirrors else tied(V_HIGH, NUMBER_BITS)
     hidden, crosses, crosses_1 = (bit(), bit(), bit()) if mirrors else (tied(0, 1), tied(0, 1), tied(0, 1))
     mirror_axis = unsigned(AXIS_BITS) if mirrors else tied(0, AXIS_BITS)

@@ -27,7 +27,7 @@ def row_slope(clk, first_row, next_row, camera, slope, config: Configuration):
     screen = config.screen_geometry
     bits = span_slope_bits(config)
 
-    if config.turn:
+    if camera.has("forward_x"):
         components = [
             slope_start(
                 clk=clk, first_row=first_row, next_row=next_row, forward=forward, right=right, up=up,

@@ -76,7 +76,7 @@ def span_control(
     frame_chain = Chain(config) if mirrors else Chain(config).tie({})
     weight, first_weight, passed = (unsigned(weight_width) for _ in range(3))
     own = unsigned(MIRROR_BITS)
-    mirrored = unsigned(MIRROR_BITS) if config.materials else tied(2, MIRROR_BITS)
+    mirrored = unsigned(MIRROR_BITS) if rect.has("mirror") else tied(2, MIRROR_BITS)
     no_column, no_axis, no_distance = tied(0, width), tied(0, AXIS_BITS), tied(0, eye_bits(config) - 1)
     all_columns = tied(columns, width)
     eye_x, eye_y, eye_z = (signed(eye_bits(config)) for _ in range(3))
@@ -112,7 +112,7 @@ def span_control(
 
     show_colour = assign(colour, lambda: picture.background if gap else rect.colour)
 
-    if mirrors and config.materials:
+    if mirrors and rect.has("mirror"):
         see_mirror = assign(mirrored, lambda: rect.mirror)
 
     if mirrors:

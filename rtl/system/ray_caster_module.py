@@ -61,7 +61,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
     if camera_fixed:
         camera_readback = tied(0, WORD_BITS)
     else:
-        position = camera_mem(scene_clk, reset, bus, camera_readback, camera, config)
+        position = camera_mem(scene_clk, reset, bus, camera_readback, camera)
     if config.bus in BRIDGES:
         avs_s0, name = AvalonPort(len(bus.address)), BUSES[config.bus].port
         port = {"s_axi": s_axi, "wb": wb, "s_apb": s_apb, "uart": uart}[name]
