@@ -10,7 +10,7 @@ from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import WORD_BITS, index_bits
 from raycaster.rtl.scene.rect_slot import rect_slot
 from raycaster.rtl.scene.rect_sorter import rect_sorter
-from raycaster.rtl.scene.written_rect import BANK_BITS, BANKS, CORNER, Copies, implemented_bits, written_of
+from raycaster.rtl.scene.written_rect import BANK_BITS, BANKS, CORNER, Copies, WrittenRect, implemented_bits
 
 
 @block
@@ -42,7 +42,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     next_index = unsigned(index_width)
     found, in_table, known, write, repeats, again = (bit() for _ in range(6))
     written = unsigned(count)
-    stored, old, mask, data, merged = (written_of(config) for _ in range(5))
+    stored, old, mask, data, merged = (WrittenRect(config) for _ in range(5))
     implemented = tied(implemented_bits(config), len(merged.word))
     pattern_word = old.pattern if old.has("pattern") else tied(0, WORD_BITS)
     mask_0, mask_1, mask_2, mask_3 = (unsigned(WORD_BITS) for _ in range(4))
@@ -53,7 +53,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     usable, bad = side_by_side(usables), side_by_side(bads)
     storing, flat, reads = bit(), bit(), bit()
     latest_index = unsigned(index_width)
-    latest = written_of(config)
+    latest = WrittenRect(config)
     all_copies = [Copies() for _ in range(count)]
     copies_words = [copies.word for copies in all_copies]
     latest_copies, read_copies = Copies(), Copies()

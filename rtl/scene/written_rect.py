@@ -25,8 +25,8 @@ class WrittenRect(Record):
     kind, cell and colour_2. Bits outside register fields are 0.
     """
 
-    def __init__(self, materials: bool = False, patterns: bool = False):
-        words = dict.fromkeys(("corner_0", "corner_1", "surface"), WORD_BITS) | {"pattern": WORD_BITS * patterns}
+    def __init__(self, config: Configuration):
+        words = dict.fromkeys(("corner_0", "corner_1", "surface"), WORD_BITS) | {"pattern": WORD_BITS * config.patterns}
         lows = {name: sum(list(words.values())[place:]) for place, name in enumerate(words, 1)}
         parts = {
             f"{axis}_{number}": (lows[f"corner_{number}"] + field.lsb, field.width)
@@ -36,23 +36,18 @@ class WrittenRect(Record):
         mirror = SURFACE.fields["mirror"]
         parts["colour"] = lows["surface"] + SURFACE.fields["blue"].lsb, RGB_BITS
         parts["enable"] = lows["surface"] + SURFACE.fields["enable"].lsb, 1
-        parts["mirror"] = lows["surface"] + mirror.lsb, mirror.width * materials
-        parts["colour_2"] = PATTERN.fields["blue"].lsb, RGB_BITS * patterns
+        parts["mirror"] = lows["surface"] + mirror.lsb, mirror.width * config.materials
+        parts["colour_2"] = PATTERN.fields["blue"].lsb, RGB_BITS * config.patterns
         for name in ("kind", "cell"):
-            parts[name] = PATTERN.fields[name].lsb, PATTERN.fields[name].width * patterns
+            parts[name] = PATTERN.fields[name].lsb, PATTERN.fields[name].width * config.patterns
         super().__init__(words, parts)
-
-
-def written_of(config: Configuration) -> WrittenRect:
-    """Return a `WrittenRect` sized for this configuration."""
-    return WrittenRect(config.materials, config.patterns)
 
 
 def implemented_bits(config: Configuration) -> int:
     """Return the mask of a written rectangle's bits that a design has."""
     corner = CORNER.implemented
     words = {"corner_0": corner, "corner_1": corner, "surface": surface_mask(config), "pattern": PATTERN.implemented}
-    return written_of(config).pack(words)
+    return WrittenRect(config).pack(words)
 
 
 BANKS = 3

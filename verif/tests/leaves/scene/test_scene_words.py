@@ -19,7 +19,7 @@ from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.rtl.scene.rect_slot import rect_slot
 from raycaster.rtl.scene.rect_sorter import rect_sorter
 from raycaster.rtl.scene.scene_word import scene_word
-from raycaster.rtl.scene.written_rect import BANK_BITS, BANKS, Copies, written_of
+from raycaster.rtl.scene.written_rect import BANK_BITS, BANKS, Copies, WrittenRect
 from raycaster.runs.tools import run_yosys
 from raycaster.scene import UNTURNED
 from raycaster.sim.register_model import AXES, CameraWords, Table, Word
@@ -125,7 +125,7 @@ SORTED_LOOKS = [
 def test_rect_sorter(options, leaf_of, random):
     """Rectangles on each axis with corners in any order, and every look."""
     config = sized(1, **options)
-    leaf = leaf_of(rect_sorter, config, written=lambda: written_of(config))
+    leaf = leaf_of(rect_sorter, config, written=lambda: WrittenRect(config))
     names, cell = Table(config).names, register_map(1)["rectangle[0].pattern"].fields["cell"]
     for _ in range(150):
         table, words = rectangle_words(random)
