@@ -58,7 +58,8 @@ class FixedScene:
     @property
     def camera_fields(self) -> dict[str, int]:
         """Fields of the fixed camera's record: position, basis and, if there is one, the light."""
-        vectors = zip(("", "forward_", "right_", "up_"), (self._eye, *self.basis), strict=True)
+        assert self.camera is not None
+        vectors = zip(("", "forward_", "right_", "up_"), (self.camera, *self.basis), strict=True)
         fields = {f"{name}{axis}": part for name, vector in vectors for axis, part in zip("xyz", vector, strict=True)}
         if self.light:
             fields |= dict(zip(("light_x", "light_y", "light_z", "light_shade"), self.light, strict=True))
@@ -74,21 +75,6 @@ class FixedScene:
     def name(self) -> str:
         """Short file name, different for scenes that differ in anything fixed."""
         return f"{self.scope}-{hashlib.sha256(repr(self).encode()).hexdigest()[:8]}"
-
-    @property
-    def distances(self) -> tuple[int, ...]:
-        """Signed distances from the fixed camera to each rectangle's plane."""
-        return tuple(rectangle.position - self._eye[rectangle.axis] for rectangle in self.rectangles)
-
-    @property
-    def _eye(self) -> tuple[int, int, int]:
-        if self.camera is None:
-            raise ValueError("the camera is live")
-        return self.camera
-
-    def column(self, name: str) -> tuple[int, ...]:
-        """Return one attribute of every rectangle."""
-        return tuple(getattr(rectangle, name) for rectangle in self.rectangles)
 
 
 def varying_bits(values: Sequence[int]) -> int:

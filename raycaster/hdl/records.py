@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Self
 from myhdl import ConcatSignal
 
 from raycaster.hdl.internals import Block, Process, SignalType, SignedSlice, SliceSignal, slices_of
-from raycaster.hdl.signals import Signed, Tied, Unconnected, initial, tied, unsigned
+from raycaster.hdl.signals import Signed, Tied, initial, tied, unsigned
 
 
 class Interface:
@@ -116,10 +116,6 @@ class Record:
         for name, bits in self.layout.items():
             word = word << bits | int(values.get(name, 0)) % (1 << bits)
         return word
-
-    def left_open(self) -> Self:
-        """Leave the record unconnected, and return it."""
-        return self._connect(Unconnected(initial(0, self.word)))
 
     def slice(self, name: str) -> tuple[int, int]:
         """Return the highest and the lowest bit of a field."""

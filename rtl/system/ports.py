@@ -3,11 +3,9 @@
 
 from typing import Any
 
-from myhdl import ResetSignal
-
 from raycaster.buses import BUSES
 from raycaster.configuration import CHANNEL_BITS, Configuration
-from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.signals import bit, reset_signal, unsigned
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.registers import address_bits
 from raycaster.rtl.bus.buses import BRIDGES
@@ -20,7 +18,7 @@ from raycaster.rtl.system.scene_player import BUTTONS
 def module_ports(config: Configuration) -> dict[str, Any]:
     """Return the ports of ray_caster_module; in Verilog they become vga_* and, for the bus, avs_s0_* or similar."""
     interface = BRIDGES[config.bus].interface if config.bus in BRIDGES else AvalonPort
-    ports = {"clk": bit(), "reset": ResetSignal(0, active=1, isasync=False), "avs_s0": None}
+    ports = {"clk": bit(), "reset": reset_signal(), "avs_s0": None}
     ports |= {BUSES[config.bus].port: interface(address_bits(*config.map))}
     return ports | {"irq": bit(), "vga": Vga(config.port_bits)}
 

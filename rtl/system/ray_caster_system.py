@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The ray tracer and a processor that drives it: the top of a system that runs a program, such as a game."""
 
-from myhdl import ResetSignal, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import bit
+from raycaster.hdl.signals import bit, reset_signal
 from raycaster.registers import address_bits
 from raycaster.rtl.common.interfaces import AvalonPort
 from raycaster.rtl.system.processor_host import processor_host
@@ -26,7 +26,7 @@ def ray_caster_system(clk, ready, buttons, uart_tx, vga, config: Configuration, 
         vga: `Vga`; output, as in ray_caster_module.
         program: the file with the program, as in word_memory.
     """
-    reset = ResetSignal(0, active=1, isasync=False)
+    reset = reset_signal()
     bus = AvalonPort(address_bits(*config.map))
     irq = bit()
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The ray tracer and a scene player that drives its bus, for boards without a processor: the top module of a board."""
 
-from myhdl import ResetSignal, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import bit, tied, unconnected
+from raycaster.hdl.signals import bit, reset_signal, tied, unconnected
 from raycaster.registers import address_bits
 from raycaster.rtl.common.interfaces import AvalonPort
 from raycaster.rtl.common.widths import WORD_BITS
@@ -27,7 +27,7 @@ def scene_system(clk, ready, buttons, vga, config: Configuration, scene: Scene):
         vga: `Vga`; output, as in ray_caster_module.
         scene: the scene.
     """
-    reset = ResetSignal(0, active=1, isasync=False)
+    reset = reset_signal()
     bus = AvalonPort(
         address_bits(*config.map), read=tied(0, 1), readdata=unconnected(WORD_BITS), readdatavalid=unconnected(1)
     )

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The ray tracer with a serial port instead of a processor: the top of a board that shows what a computer sends."""
 
-from myhdl import ResetSignal, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.hdl.signals import unconnected
+from raycaster.hdl.signals import reset_signal, unconnected
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.rtl.system.reset_release import reset_release
 
@@ -21,7 +21,7 @@ def serial_system(clk, ready, uart, vga, config: Configuration):
         vga: `Vga`; output, as in ray_caster_module.
         config: the design, whose bus is uart.
     """
-    reset = ResetSignal(0, active=1, isasync=False)
+    reset = reset_signal()
 
     reset_source = reset_release(clk, ready, reset)
     module = ray_caster_module(clk, reset, avs_s0=None, irq=unconnected(1), vga=vga, config=config, uart=uart)

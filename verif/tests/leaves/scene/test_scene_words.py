@@ -172,7 +172,7 @@ def test_rect_rom(count, alike, options, engine, leaf_of, random):
     for _ in range(300):
         index, fetch = int(random.integers(count)), int(random.integers(2))
         leaf.case({"rects_index": index, "rects_fetch": fetch}, shown)
-        now = {f"rects_rect_{name}": config.fixed.column(name)[index] for name in fields}
+        now = {f"rects_rect_{name}": getattr(config.fixed.rectangles[index], name) for name in fields}
         shown = now if fetch else shown
     leaf.check(settled=8)
 
@@ -188,6 +188,6 @@ def test_rect_rom_needs_no_registers_for_equal_fields(engine, tmp_path):
         run_yosys(directory, "alike", ["read_verilog rect_rom.v", "synth -top rect_rom", "tee -o stat.txt stat"])
         kinds = re.findall(r"^ +(\d+) .*_DFF\w*_|\$_DFF\w*_ +(\d+)", (directory / "stat.txt").read_text(), re.M)
         registers = sum(int(number) for pair in kinds for number in pair if number)
-        most = sum(varying_bits(config.fixed.column(name)).bit_count() for name in FIELDS)
+        most = sum(varying_bits([getattr(one, name) for one in config.fixed.rectangles]).bit_count() for name in FIELDS)
         assert registers <= most, repeat()
         assert (registers > 0) == (count > 1)
