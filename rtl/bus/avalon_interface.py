@@ -97,7 +97,7 @@ def avalon_interface(
     (
         id_address, version_address, engine_address, size_address, control_address, status_address, cycles_address,
         irq_enable_address, irq_pending_address, background_address, camera_address,
-    ) = (tied(registers[name].address, len(bus.address)) for name in in_order)  # fmt: skip
+    ) = (bus.address_of(registers[name]) for name in in_order)  # fmt: skip
     id_value = tied(registers["id"].reset, WORD_BITS)
     version_value = tied(version_word(config), WORD_BITS)
     engine_value, size_value = tied(engine_word(config), WORD_BITS), tied(size_word(config), WORD_BITS)
@@ -122,9 +122,7 @@ def avalon_interface(
     elsewhere = rect_readback
     if has_large_table(config):
         elsewhere, at_table = unsigned(WORD_BITS), bit()
-        table_address, table_value = (
-            tied(registers["table"].address, len(bus.address)), tied(table_word(config), WORD_BITS),
-        )  # fmt: skip
+        table_address, table_value = bus.address_of(registers["table"]), tied(table_word(config), WORD_BITS)
 
         find_table = assign(at_table, lambda: bus.address == table_address)
         read_table = assign(elsewhere, lambda: table_value if at_table else rect_readback)
@@ -171,12 +169,12 @@ def avalon_interface(
         written_ones.next = bus.data & bus.mask
 
     if config.light:
-        light_address = tied(registers["light"].address, len(bus.address))
+        light_address = bus.address_of(registers["light"])
 
         find_light = assign(at_light, lambda: bus.address == light_address)
 
     if config.turn:
-        up_address = tied(registers["up"].address, len(bus.address))
+        up_address = bus.address_of(registers["up"])
 
         # The camera's registers have consecutive addresses.
         find_camera = assign(at_camera, lambda: camera_address <= bus.address <= up_address)

@@ -3,7 +3,7 @@
 
 from myhdl import Signal, always_comb, always_seq, block, instances, intbv
 
-from raycaster.hdl.signals import bit, tied, unsigned
+from raycaster.hdl.signals import bit, unsigned
 from raycaster.hdl.verbs import assign
 from raycaster.registers import register_map
 from raycaster.rtl.common.widths import WORD_BITS
@@ -28,7 +28,7 @@ def frame_registers(clk, reset, bus, events, rect_readback, readback, rectangles
     most = (1 << count_bits) - 1
     none = registers["frames.left"].reset
     cycles_address, left_address, counts_address, status_address = (
-        tied(registers[f"frames.{name}"].address, len(bus.address)) for name in ("cycles", "left", "counts", "status")
+        bus.address_of(registers[f"frames.{name}"]) for name in ("cycles", "left", "counts", "status")
     )
 
     cycles, least = unsigned(WORD_BITS), Signal(intbv(none)[WORD_BITS:])

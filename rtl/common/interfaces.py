@@ -8,7 +8,8 @@ from typing import Any, ClassVar
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.records import Interface
-from raycaster.hdl.signals import bit, signed, unconnected, unsigned
+from raycaster.hdl.signals import Tied, bit, signed, tied, unconnected, unsigned
+from raycaster.registers import Register
 from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import (
     CYCLE_BITS,
@@ -299,6 +300,10 @@ class SceneBus(Interface):
         self.data, self.mask = unsigned(WORD_BITS), unsigned(WORD_BITS)
         if not is_read:
             vars(self).update({name: unconnected(signal) for name, signal in vars(self).items()})
+
+    def address_of(self, register: Register) -> Tied:
+        """Return the address of a register as a constant, as wide as the bus's addresses."""
+        return tied(register.address, len(self.address))
 
 
 class Rects(Group):

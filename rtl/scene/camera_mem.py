@@ -43,13 +43,13 @@ def camera_mem(clk, reset, bus, readback, camera):
         for register, select, shadow, live in zip(registers, selects, shadows, lives, strict=True)
     ]  # fmt: skip
     select_position, position_word = selects[0], shadows[0]
-    camera_address = tied(registers[0].address, len(bus.address))
+    camera_address = bus.address_of(registers[0])
 
     decode = assign(select_position, lambda: bus.address == camera_address)
 
     if lit:
         select_light, light_word = selects[-1], shadows[-1]
-        light_address = tied(registers[-1].address, len(bus.address))
+        light_address = bus.address_of(registers[-1])
 
         decode_light = assign(select_light, lambda: bus.address == light_address)
 
@@ -59,9 +59,7 @@ def camera_mem(clk, reset, bus, readback, camera):
     if turns:
         select_forward, select_right, select_up = selects[1:4]
         forward_word, right_word, up_word = shadows[1:4]
-        forward_address, right_address, up_address = (
-            tied(register.address, len(bus.address)) for register in registers[1:4]
-        )
+        forward_address, right_address, up_address = map(bus.address_of, registers[1:4])
 
         @always_comb
         def decode_basis():
