@@ -3,10 +3,8 @@
 
 from __future__ import annotations
 
-import ast
 import inspect
 import re
-import sys
 import textwrap
 from collections.abc import Mapping, Sequence
 from itertools import takewhile
@@ -39,7 +37,7 @@ class Comments:
         self._vocabulary, self._width = vocabulary, width
         self._given = inspect.signature(block.func).bind(*block.args, **block.kwargs).arguments
         self._known: Mapping[str, Any] = {**vocabulary, **block.func.__globals__, **self._given}
-        purpose, self._texts = _sections(_doc(block.func), "Args")
+        purpose, self._texts = _sections(block.func, "Args")
         self.purpose = "".join(f"// {self._in_verilog(line)}\n" for line in purpose.splitlines())
         """The text above the module."""
 
@@ -88,7 +86,7 @@ class Comments:
                 first = next((port for port in ports if port == argument or port.startswith(f"{argument}_")), None)
                 add(first, f"{argument}_*: {text}" if is_group else text)
             add_layout(argument, value)
-            attributes = _sections(_doc(type(value)), "Attributes")[1] if is_group else {}
+            attributes = _sections(type(value), "Attributes")[1] if is_group else {}
             for attribute, meaning in attributes.items():
                 port = f"{argument}_{attribute}"
                 add(port, meaning)
@@ -120,19 +118,8 @@ class Comments:
         return re.sub(r"\b([a-z]\w*)\.([a-z]\w*)\b", r"\1_\2", text)
 
 
-def _doc(what: Any) -> str:
-    """Return the docstring of a function or a class; python -OO has it in the source only."""
-    if sys.flags.optimize < 2:
-        return inspect.getdoc(what) or ""
-    for one in getattr(what, "__mro__", (what, object))[:-1]:
-        [tree] = ast.parse(textwrap.dedent(inspect.getsource(one))).body
-        if isinstance(tree, (ast.FunctionDef, ast.ClassDef)) and (text := ast.get_docstring(tree)):
-            return text
-    return ""
-
-
-def _sections(doc: str, title: str) -> tuple[str, Mapping[str, str]]:
-    """Return a docstring up to a section, and the section's entries: texts by name."""
-    head, _, listed = doc.partition(f"{title}:\n")
+def _sections(what: Any, title: str) -> tuple[str, Mapping[str, str]]:
+    """Return the docstring of a function or a class up to a section, and the section's entries: texts by name."""
+    head, _, listed = (inspect.getdoc(what) or "").partition(f"{title}:\n")
     entries = re.findall(r"^    (\w+): (.*(?:\n {8,}.*)*)", listed, re.M)
     return head.rstrip(), {name: " ".join(text.split()) for name, text in entries}
