@@ -11,7 +11,7 @@ from typing import SupportsIndex
 import numpy as np
 
 from raycaster.fixed import FixedRectangle
-from raycaster.scene import Scene
+from raycaster.scene import CELLS, Scene
 
 OTHER_AXES = ((1, 2), (0, 2), (0, 1))
 """u and v, the two axes along which a rectangle extends, by the axis of its plane (0, 1, 2 for x, y, z)."""
@@ -75,7 +75,7 @@ class Rectangles:
             enabled=np.ones(len(rectangles), dtype=bool),
             mirrors=np.array([one.mirror for one in rectangles], dtype=np.int64),
             kinds=np.array([one.kind for one in rectangles], dtype=np.int64),
-            cells=np.array([8 << one.cell for one in rectangles], dtype=np.int64),
+            cells=np.array([CELLS[one.cell] for one in rectangles], dtype=np.int64),
             colours_2=np.array([list(one.colour_2.to_bytes(3)) for one in rectangles], dtype=np.uint8),
         )
 

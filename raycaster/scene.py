@@ -181,7 +181,7 @@ if TYPE_CHECKING:
 else:
     PatternName = Literal[*PATTERNS]
 Pattern = Annotated[PatternName, _Check(_choice, f"must be {listed(map(json.dumps, PATTERNS))}", {"choices": PATTERNS})]
-CellSize = Annotated[int, _Check(_choice, "must be 8, 16, 32, 64, 128 or 256", {"choices": CELLS, "whole": True})]
+CellSize = Annotated[int, _Check(_choice, f"must be {listed(CELLS)}", {"choices": CELLS, "whole": True})]
 Basis = tuple[tuple[int, int, int], tuple[int, int, int], tuple[int, int, int]]
 
 

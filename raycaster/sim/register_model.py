@@ -16,7 +16,7 @@ from raycaster.golden.spans import SpanModel
 from raycaster.golden.world import Rectangles
 from raycaster.registers import Register, register_map
 from raycaster.rtl.engines import buffered_engine_of
-from raycaster.scene import UNTURNED, Basis, Light
+from raycaster.scene import CELLS, UNTURNED, Basis, Light
 from raycaster.screens import Screen
 
 AXES = "xyz"
@@ -92,7 +92,7 @@ class Table:
             mirrors.append(min(fields["mirror"], 4) if self._config.materials else 2)
             fields = self._pattern.unpack(pattern[0] if pattern else 0)
             kinds.append(fields["kind"])
-            cells.append(8 << fields["cell"])
+            cells.append(CELLS[0] << fields["cell"])
             colours_2.append([fields[channel] for channel in COLOURS])
         return Rectangles(
             np.array(corners), np.array(colours, dtype=np.uint8), np.array(enabled), np.array(mirrors),

@@ -3,7 +3,8 @@
 
 from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, WORLD_SIZE, Configuration
 from raycaster.hdl.signals import bits_for
-from raycaster.scene import PATTERNS
+from raycaster.registers import register_map
+from raycaster.scene import CELLS
 
 SLOPE_BITS = 9
 """Magnitude of a slope; the sign is stored separately."""
@@ -30,11 +31,10 @@ SHADE_BITS = 2
 REFLECTION_BITS = 3
 """The number of reflections that a scene asks for."""
 
-KIND_BITS = (len(PATTERNS) - 1).bit_length()
-CELL_BITS = 3
+KIND_BITS, CELL_BITS = (register_map(1)["rectangle[0].pattern"].fields[name].width for name in ("kind", "cell"))
 """A pattern's kind, and log2 of its cell size in world units, minus three."""
 
-SMALLEST_CELL_BITS = 3
+SMALLEST_CELL_BITS = CELLS[0].bit_length() - 1
 """log2 of the size of a pattern's smallest cell, in world units."""
 
 WORD_BITS = 32
