@@ -10,10 +10,10 @@ from collections.abc import Callable
 from types import FunctionType
 from typing import Any
 
-from myhdl import Signal, always_comb
+from myhdl import Signal
 
 from raycaster.hdl.internals import Assignment, Process, Register, SignalType, adopted, calling_block
-from raycaster.hdl.signals import initial
+from raycaster.hdl.signals import bit, initial
 
 
 def assign(target: SignalType, value: Callable[[], Any]) -> Assignment:
@@ -34,42 +34,26 @@ def register(clk: SignalType, target: SignalType, value: Callable[[], Any], when
 def plus(_a: Any, _b: Any, width: int) -> tuple[SignalType, Process]:
     """Return _a + _b in a signal of this width, `Signed` for two's complement, and its process."""
     _sum = Signal(initial(0, width))
-
-    @always_comb
-    def add():
-        _sum.next = _a + _b
-
+    add = assign(_sum, lambda: _a + _b)
     return _sum, adopted(add)
 
 
 def minus(_a: Any, _b: Any, width: int) -> tuple[SignalType, Process]:
     """Return _a - _b in a signal of this width, `Signed` for two's complement, and its process."""
     _difference = Signal(initial(0, width))
-
-    @always_comb
-    def subtract():
-        _difference.next = _a - _b
-
+    subtract = assign(_difference, lambda: _a - _b)
     return _difference, adopted(subtract)
 
 
 def times(_a: Any, _b: Any, width: int) -> tuple[SignalType, Process]:
     """Return _a * _b in a signal of this width, `Signed` for two's complement, and its process."""
     _product = Signal(initial(0, width))
-
-    @always_comb
-    def multiply():
-        _product.next = _a * _b
-
+    multiply = assign(_product, lambda: _a * _b)
     return _product, adopted(multiply)
 
 
 def less(_a: Any, _b: Any) -> tuple[SignalType, Process]:
     """Return a flag that is high if _a < _b, and its process."""
-    _is_less = Signal(bool(0))
-
-    @always_comb
-    def compare():
-        _is_less.next = _a < _b
-
+    _is_less = bit()
+    compare = assign(_is_less, lambda: _a < _b)
     return _is_less, adopted(compare)
