@@ -18,7 +18,6 @@ from raycaster.rtl.common.widths import (
     RGB_BITS,
     SLOPE_BITS,
     WORD_BITS,
-    column_bits,
     index_bits,
     offset_bits,
     row_bits,
@@ -322,22 +321,6 @@ class Rects(Group):
         self.fetch = bit()
         self.rect = Rect(config)
         super().__init__(**given)
-
-
-class Run(Interface):
-    """A run of columns of one colour; a run is taken in each cycle in which valid and ready are high.
-
-    Attributes:
-        valid: a run is offered; it stays until it is taken.
-        ready: the run is taken in this cycle if it is valid.
-        end: the column after the run's last one.
-        colour: red, green and blue, 24 bits.
-    """
-
-    def __init__(self, config: Configuration):
-        self.valid, self.ready = bit(), bit()
-        self.end = unsigned(column_bits(config))
-        self.colour = unsigned(RGB_BITS)
 
 
 class ProcessorBus(Interface):

@@ -10,15 +10,10 @@ from raycaster.rtl.common.widths import (
     AXIS_BITS,
     BASIS_BITS,
     CELL_BITS,
-    DISTANCE_BITS,
     KIND_BITS,
     MIRROR_BITS,
     RGB_BITS,
     SHADE_BITS,
-    WIDE_BITS,
-    eye_bits,
-    position_bits,
-    walk_bits,
 )
 
 
@@ -49,25 +44,11 @@ class Camera(Record):
             self.tie(fixed)
 
 
-class Origin(Record):
-    """A point where a ray starts or hits, with the configuration's fraction bits."""
-
-    def __init__(self, config: Configuration):
-        super().__init__(dict.fromkeys("xyz", position_bits(config)))
-
-
 class Signs(Record):
     """Signs of a ray's slope components, 1 if negative. A reflection changes one of them and no magnitude."""
 
     def __init__(self):
         super().__init__(dict.fromkeys(("dx", "dy", "dz"), 1))
-
-
-class Ray(Record):
-    """The parts of a ray that a reflection changes: its start, an `Origin`, and its `Signs`."""
-
-    def __init__(self, config: Configuration):
-        super().__init__(Origin(config).layout | Signs().layout)
 
 
 class Colour(Record):
@@ -122,44 +103,3 @@ class Rect(Record):
         surface, below = surface_fields(config, coordinate_bits), sum(bounds.values())
         look = below, sum(look_fields(config).values())
         super().__init__(surface | bounds, {"surface": (below, sum(surface.values())), "look": look})
-
-
-class WideRect(Record):
-    """A rectangle without colour, whose bounds may be one unit further out."""
-
-    def __init__(self):
-        bounds = dict.fromkeys(("u_low", "u_high", "v_low", "v_high"), Signed(WIDE_BITS))
-        super().__init__({"axis": AXIS_BITS, "position": COORDINATE_BITS} | bounds)
-
-
-class Mirror(Record):
-    """The mirror that a ray left last, if `active`: the axis of its plane, and its distance from the eye.
-
-    With more than one reflection, met_x, met_y, met_z: the axes of all mirrors that the ray met at that same point.
-    """
-
-    def __init__(self, config: Configuration, distance_bits: int | None = None):
-        met = dict.fromkeys(("met_x", "met_y", "met_z"), int(config.most_reflections > 1))
-        super().__init__({"active": 1, "axis": AXIS_BITS, "distance": distance_bits or eye_bits(config) - 1} | met)
-
-
-class Facet(Record):
-    """A rectangle as seen by the rays of one row from the camera; see `Walk` for the axis q.
-
-    usable: it may be hit; distance: n = k - E[a] from the camera to its plane; way_q: n D[q], the same for all columns.
-    """
-
-    def __init__(self, config: Configuration):
-        super().__init__(
-            {"usable": 1, "axis": AXIS_BITS, "distance": Signed(DISTANCE_BITS), "way_q": Signed(walk_bits(config))}
-        )
-
-
-class Walk(Record):
-    """The compared products that change with the column: n D[p], and (bound - E) D[a] for the four bounds.
-
-    p is y, the axis along which the slope changes per column, or x for a plane across y. q is the third axis.
-    """
-
-    def __init__(self, bits: int):
-        super().__init__(dict.fromkeys(("way_p", "low_p", "high_p", "low_q", "high_q"), Signed(bits)))

@@ -7,11 +7,10 @@ from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit, signed, tied, unsigned
 from raycaster.hdl.verbs import assign, register, times
 from raycaster.rtl.common.interfaces import Place, Rects, Vector
-from raycaster.rtl.common.records import Facet, Walk, WideRect
 from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, wide_walk_bits
 from raycaster.rtl.cull.group_tester import group_tester
-from raycaster.rtl.cull.rect_copy import rect_copy
-from raycaster.rtl.cull.rect_setup import rect_setup
+from raycaster.rtl.cull.rect_copy import WideRect, rect_copy
+from raycaster.rtl.cull.rect_setup import Facet, Walk, rect_setup
 
 
 @block

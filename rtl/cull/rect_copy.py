@@ -10,6 +10,14 @@ from raycaster.hdl.verbs import minus, plus, register
 from raycaster.rtl.common.widths import AXIS_BITS, WIDE_BITS, index_bits
 
 
+class WideRect(Record):
+    """A rectangle without colour, whose bounds may be one unit further out."""
+
+    def __init__(self):
+        bounds = dict.fromkeys(("u_low", "u_high", "v_low", "v_high"), Signed(WIDE_BITS))
+        super().__init__({"axis": AXIS_BITS, "position": COORDINATE_BITS} | bounds)
+
+
 @block
 def rect_copy(clk, rects, copy, margin: int, config: Configuration):
     """Store each rectangle that the engine fetches from rects, and present it to a second reader through copy.

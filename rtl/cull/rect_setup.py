@@ -4,14 +4,37 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
+from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
 from raycaster.hdl.verbs import assign, minus
 from raycaster.rtl.common.by_axis import along_a, along_p, along_q, by_axis
-from raycaster.rtl.common.widths import AXIS_BITS, DISTANCE_BITS, exact_slope_bits, index_bits
+from raycaster.rtl.common.widths import AXIS_BITS, DISTANCE_BITS, exact_slope_bits, index_bits, walk_bits
 from raycaster.rtl.engine.array_multiplier import array_multiplier
 
 SETUP_LATENCY = 5
 """Cycles from start_line to the first rectangle's products."""
+
+
+class Facet(Record):
+    """A rectangle as seen by the rays of one row from the camera; see `Walk` for the axis q.
+
+    usable: it may be hit; distance: n = k - E[a] from the camera to its plane; way_q: n D[q], the same for all columns.
+    """
+
+    def __init__(self, config: Configuration):
+        super().__init__(
+            {"usable": 1, "axis": AXIS_BITS, "distance": Signed(DISTANCE_BITS), "way_q": Signed(walk_bits(config))}
+        )
+
+
+class Walk(Record):
+    """The compared products that change with the column: n D[p], and (bound - E) D[a] for the four bounds.
+
+    p is y, the axis along which the slope changes per column, or x for a plane across y. q is the third axis.
+    """
+
+    def __init__(self, bits: int):
+        super().__init__(dict.fromkeys(("way_p", "low_p", "high_p", "low_q", "high_q"), Signed(bits)))
 
 
 @block

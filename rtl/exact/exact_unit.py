@@ -7,14 +7,14 @@ from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, unconnected, unsigned
 from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.interfaces import Slope, Vector
-from raycaster.rtl.common.records import Colour, Mirror, Signs, Surface
+from raycaster.rtl.common.records import Colour, Signs, Surface
 from raycaster.rtl.common.widths import RGB_BITS, exact_slope_bits, eye_bits, light_slope_bits
 from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.pattern_colour import pattern_colour
 from raycaster.rtl.engine.ray_generator import ray_generator
 from raycaster.rtl.engine.shade_colour import shade_colour
 from raycaster.rtl.exact.cell_finder import cell_finder
-from raycaster.rtl.exact.eye_register import eye_register
+from raycaster.rtl.exact.eye_register import Mirror, eye_register
 from raycaster.rtl.exact.nearest_hit import nearest_hit
 from raycaster.rtl.exact.ray_switch import ray_switch
 from raycaster.rtl.exact.rect_tester import rect_tester

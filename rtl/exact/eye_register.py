@@ -3,10 +3,23 @@
 
 from myhdl import always, always_comb, block, instances
 
-from raycaster.configuration import COORDINATE_BITS
+from raycaster.configuration import COORDINATE_BITS, Configuration
+from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
 from raycaster.hdl.verbs import assign, minus
 from raycaster.rtl.common.by_axis import by_axis
+from raycaster.rtl.common.widths import AXIS_BITS, eye_bits
+
+
+class Mirror(Record):
+    """The mirror that a ray left last, if `active`: the axis of its plane, and its distance from the eye.
+
+    With more than one reflection, met_x, met_y, met_z: the axes of all mirrors that the ray met at that same point.
+    """
+
+    def __init__(self, config: Configuration, distance_bits: int | None = None):
+        met = dict.fromkeys(("met_x", "met_y", "met_z"), int(config.most_reflections > 1))
+        super().__init__({"active": 1, "axis": AXIS_BITS, "distance": distance_bits or eye_bits(config) - 1} | met)
 
 
 @block
@@ -33,12 +46,12 @@ def eye_register(
         mirror: output `Mirror` that the ray left last, not active for the primary ray; valid from the cycle after
             steps.screen_to_ray or steps.store_ray.
     """
-    eye_bits = len(eye.x)
+    width = len(eye.x)
     flipped_x, flipped_y, flipped_z, dx, dy, dz, met_x, met_y, met_z = (bit() for _ in range(9))
     twice = unsigned(COORDINATE_BITS + 1)
     twice_signed = signed(COORDINATE_BITS + 2)
-    mirrored, image = signed(eye_bits), signed(eye_bits)
-    difference, reflect = minus(twice_signed, mirrored, Signed(eye_bits + 1))
+    mirrored, image = signed(width), signed(width)
+    difference, reflect = minus(twice_signed, mirrored, Signed(width + 1))
 
     on_axis = by_axis(found_surface.axis, eye.x, eye.y, eye.z, mirrored, width=len(mirrored))
 
@@ -50,7 +63,7 @@ def eye_register(
     extend = assign(twice_signed, lambda: twice)
 
     # The image fits after every mirror except the last, after which it is don't care.
-    fit = assign(image, lambda: difference[eye_bits:].signed())
+    fit = assign(image, lambda: difference[width:].signed())
 
     # The eye, and the slope components that all mirrors together have reversed.
     @always(clk.posedge)

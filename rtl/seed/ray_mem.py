@@ -3,8 +3,26 @@
 
 from myhdl import always_comb, block, instances
 
+from raycaster.configuration import Configuration
+from raycaster.hdl.records import Record
 from raycaster.hdl.signals import bit
 from raycaster.hdl.verbs import register
+from raycaster.rtl.common.records import Signs
+from raycaster.rtl.common.widths import position_bits
+
+
+class Origin(Record):
+    """A point where a ray starts or hits, with the configuration's fraction bits."""
+
+    def __init__(self, config: Configuration):
+        super().__init__(dict.fromkeys("xyz", position_bits(config)))
+
+
+class Ray(Record):
+    """The parts of a ray that a reflection changes: its start, an `Origin`, and its `Signs`."""
+
+    def __init__(self, config: Configuration):
+        super().__init__(Origin(config).layout | Signs().layout)
 
 
 @block

@@ -7,14 +7,14 @@ from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unconnected, unsigned
 from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.interfaces import Slope
-from raycaster.rtl.common.records import Origin, Ray, Signs
+from raycaster.rtl.common.records import Signs
 from raycaster.rtl.common.widths import AXIS_BITS, MIRROR_BITS, RGB_BITS, position_bits
 from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.pattern_colour import pattern_colour
 from raycaster.rtl.engine.ray_generator import ray_generator
 from raycaster.rtl.engine.ray_sequencer import ends_early
 from raycaster.rtl.seed.intersection_finder import intersection_finder
-from raycaster.rtl.seed.ray_mem import ray_mem
+from raycaster.rtl.seed.ray_mem import Origin, Ray, ray_mem
 from raycaster.rtl.seed.z_buffer import z_buffer
 
 

@@ -233,3 +233,19 @@ class Asks(Group):
         given: dict[str, Any] = {} if asks else {"ask": tied(0, 1), "query": Query(config).tie({})}
         given |= {} if divides else {"divide": tied(0, 1), "division": Division(config).tie({})}
         super().__init__(**given)
+
+
+class Run(Interface):
+    """A run of columns of one colour; a run is taken in each cycle in which valid and ready are high.
+
+    Attributes:
+        valid: a run is offered; it stays until it is taken.
+        ready: the run is taken in this cycle if it is valid.
+        end: the column after the run's last one.
+        colour: red, green and blue, 24 bits.
+    """
+
+    def __init__(self, config: Configuration):
+        self.valid, self.ready = bit(), bit()
+        self.end = unsigned(column_bits(config))
+        self.colour = unsigned(RGB_BITS)

@@ -6,11 +6,12 @@ from myhdl import ConcatSignal, always, block, instances
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, side_by_side, tied, unsigned
 from raycaster.hdl.verbs import assign
-from raycaster.rtl.common.interfaces import Picture, Rects, Run, Scan, Vector
+from raycaster.rtl.common.interfaces import Picture, Rects, Scan, Vector
 from raycaster.rtl.common.records import Camera, Pixel
 from raycaster.rtl.common.widths import index_bits, pixel_bits, span_slope_bits
 from raycaster.rtl.span.frame_list import frame_list
 from raycaster.rtl.span.lists import ListEntry
+from raycaster.rtl.span.records import Run
 from raycaster.rtl.span.rect_copier import rect_copier
 from raycaster.rtl.span.rect_table import rect_table
 from raycaster.rtl.span.row_slope import row_slope

@@ -6,7 +6,7 @@ from myhdl import always, always_comb, block, instances
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unconnected, unsigned
 from raycaster.hdl.verbs import assign
-from raycaster.rtl.common.interfaces import Rects, Run, Vector
+from raycaster.rtl.common.interfaces import Rects, Vector
 from raycaster.rtl.common.widths import (
     RGB_BITS,
     column_bits,
@@ -22,7 +22,7 @@ from raycaster.rtl.span.entry_table import entry_table
 from raycaster.rtl.span.fold import fold
 from raycaster.rtl.span.line_desk import line_desk
 from raycaster.rtl.span.painter import painter
-from raycaster.rtl.span.records import Aim, Answer, Asks, Chain, Entry, Frame, Paint, count_bits
+from raycaster.rtl.span.records import Aim, Answer, Asks, Chain, Entry, Frame, Paint, Run, count_bits
 from raycaster.rtl.span.run_joiner import run_joiner
 from raycaster.rtl.span.set_up import set_up
 from raycaster.rtl.span.span_control import span_control

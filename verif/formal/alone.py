@@ -29,13 +29,9 @@ from raycaster.rtl.common.interfaces import (
     Vector,
     Vga,
 )
-from raycaster.rtl.common.records import (
-    Mirror,
-    Pixel,
-    Rect,
-    Signs,
-)
+from raycaster.rtl.common.records import Pixel, Rect, Signs
 from raycaster.rtl.common.widths import LANES, WORD_BITS
+from raycaster.rtl.exact.eye_register import Mirror
 from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import rect_rom

@@ -33,9 +33,10 @@ from raycaster.hdl.signals import bits_for
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.common import widths
 from raycaster.rtl.common.interfaces import AIM_CYCLES
-from raycaster.rtl.common.records import Camera, Mirror, Rect, Surface, look_fields
+from raycaster.rtl.common.records import Camera, Rect, Surface, look_fields
 from raycaster.rtl.cull.rect_setup import SETUP_LATENCY
 from raycaster.rtl.engines import ENGINES, SEED, buffered_engine_of
+from raycaster.rtl.exact.eye_register import Mirror
 from raycaster.rtl.span.first_change import division_cycles, quotient_bits
 from raycaster.rtl.span.records import Entry
 from raycaster.verif.formal.alone import (

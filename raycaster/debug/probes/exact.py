@@ -11,7 +11,8 @@ from raycaster.debug.probes import AXES, fields
 from raycaster.debug.probes.ray import Place, Probe, Ray, Read, Value
 from raycaster.debug.probes.units import SIGNS, UnitProbes, indexed, rect_probe
 from raycaster.output import printable
-from raycaster.rtl.common.records import Mirror, Signs, Surface
+from raycaster.rtl.common.records import Signs, Surface
+from raycaster.rtl.exact.eye_register import Mirror
 from raycaster.scene import Light
 
 

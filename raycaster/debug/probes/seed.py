@@ -13,8 +13,9 @@ from raycaster.debug.probes.ray import Number, Place, Probe, Ray, Read, Value, p
 from raycaster.debug.probes.units import SIGNS, UnitProbes, indexed, rect_probe
 from raycaster.golden.colour import hit_colours
 from raycaster.golden.world import OTHER_AXES
-from raycaster.rtl.common.records import Origin, Rect
-from raycaster.rtl.common.records import Ray as RayRecord
+from raycaster.rtl.common.records import Rect
+from raycaster.rtl.seed.ray_mem import Origin
+from raycaster.rtl.seed.ray_mem import Ray as RayRecord
 
 
 def of_rectangle(name: str, when: str) -> Read:

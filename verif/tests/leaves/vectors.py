@@ -18,7 +18,9 @@ from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.signals import Signed, bit, reset_signal, signed, tied, unsigned
 from raycaster.registers import address_bits
 from raycaster.rtl.common import interfaces, records, widths
+from raycaster.rtl.cull.rect_setup import Facet
 from raycaster.rtl.engines import engine_of
+from raycaster.rtl.exact.eye_register import Mirror
 from raycaster.rtl.span import records as span
 from raycaster.verif.random_world import EXTREMES
 from raycaster.verif.seeds import repeat
@@ -32,7 +34,7 @@ PORTS: dict[str, int | Callable[[Any], Any]] = {
     "data": widths.WORD_BITS,
     "denominator": lambda config: unsigned(widths.exact_slope_bits(config)),
     "eye": lambda config: interfaces.Vector(widths.eye_bits(config)),
-    "facet": records.Facet,
+    "facet": Facet,
     "fate": lambda _: interfaces.RayFate(),
     "found_colour": widths.RGB_BITS,
     "found_distance": lambda config: unsigned(widths.eye_bits(config) - 1),
@@ -42,7 +44,7 @@ PORTS: dict[str, int | Callable[[Any], Any]] = {
     "index": lambda config: unsigned(widths.index_bits(config)),
     "initial_signs": lambda _: records.Signs(),
     "may_hit": lambda config: unsigned(config.rectangles),
-    "mirror": records.Mirror,
+    "mirror": Mirror,
     "numerator": lambda config: unsigned(widths.eye_bits(config) - 1),
     "offered": lambda config: (records.Rect if config.facts.divides else records.Surface)(config),
     "picture": lambda _: interfaces.Picture(),
@@ -68,7 +70,7 @@ SPAN_PORTS: dict[str, int | Callable[[Any], Any]] = PORTS | {
     "division": span.Division,
     "number": lambda config: unsigned(widths.index_bits(config)),
     "query": span.Query,
-    "run": interfaces.Run,
+    "run": span.Run,
     "seen_colour": widths.RGB_BITS,
     "slope": lambda config: interfaces.Vector(widths.span_slope_bits(config)),
     "step": lambda config: interfaces.Vector(widths.step_bits(config)),

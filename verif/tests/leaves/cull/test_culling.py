@@ -15,12 +15,12 @@ from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.hdl.signals import Signed
 from raycaster.rtl.common.interfaces import Rects, Vector
-from raycaster.rtl.common.records import Facet, Point, Walk, WideRect
+from raycaster.rtl.common.records import Point
 from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, wide_walk_bits
 from raycaster.rtl.cull.group_culler import group_culler
 from raycaster.rtl.cull.group_tester import group_tester
-from raycaster.rtl.cull.rect_copy import rect_copy
-from raycaster.rtl.cull.rect_setup import SETUP_LATENCY, rect_setup
+from raycaster.rtl.cull.rect_copy import WideRect, rect_copy
+from raycaster.rtl.cull.rect_setup import SETUP_LATENCY, Facet, Walk, rect_setup
 from raycaster.rtl.engines import buffered_engine_of
 from raycaster.verif.expected import sorted_rect
 from raycaster.verif.random_world import random_camera, random_rectangles

@@ -7,9 +7,9 @@ from vectors import LAST, basis_inputs, by, by_axis, by_reflections, designs, ex
 from raycaster.configuration import WORLD_SIZE
 from raycaster.hdl.signals import Signed, bit, unconnected
 from raycaster.rtl.common.interfaces import Slope, Vector
-from raycaster.rtl.common.records import Mirror, Signs
+from raycaster.rtl.common.records import Signs
 from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, light_slope_bits
-from raycaster.rtl.exact.eye_register import eye_register
+from raycaster.rtl.exact.eye_register import Mirror, eye_register
 from raycaster.rtl.exact.ray_switch import ray_switch
 from raycaster.rtl.exact.slope_component import slope_component
 from raycaster.rtl.exact.turned_generator import turned_generator

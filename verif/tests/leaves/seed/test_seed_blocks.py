@@ -16,7 +16,6 @@ from raycaster.golden.engines import model_of
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.hdl.signals import Signed, bit, unconnected
 from raycaster.rtl.common.interfaces import Slope
-from raycaster.rtl.common.records import Origin, Ray
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
     CELL_BITS,
@@ -30,7 +29,7 @@ from raycaster.rtl.seed.cell_parity import cell_parity
 from raycaster.rtl.seed.divider import divider
 from raycaster.rtl.seed.intersection_finder import intersection_finder
 from raycaster.rtl.seed.intersection_helper import intersection_helper
-from raycaster.rtl.seed.ray_mem import ray_mem
+from raycaster.rtl.seed.ray_mem import Origin, Ray, ray_mem
 from raycaster.rtl.seed.z_buffer import z_buffer
 from raycaster.verif.expected import trace_cycles
 from raycaster.verif.random_world import EXTREMES, random_camera, random_looks, random_rectangles, random_slopes

@@ -8,8 +8,8 @@ from span_vectors import span_config
 from vectors import by
 
 from raycaster.hdl.signals import bit
-from raycaster.rtl.common.interfaces import Run
 from raycaster.rtl.span.painter import painter
+from raycaster.rtl.span.records import Run
 from raycaster.rtl.span.run_joiner import run_joiner
 
 
