@@ -9,7 +9,7 @@ PYTHON3 ?= python3
 VENV := .venv
 PYTHON := $(VENV)/bin/python
 COMMANDS := sim scenes play game send walk web wave trace verilog fit area quartus bitstream registers report docs
-CHECKS := soak prove mutate gate coverage verify-all
+CHECKS := soak prove mutate gate verify-all
 # The program gets command-line variables exactly as typed: `value` and `unexport` keep make from expanding them, quotes
 # keep the shell from expanding them, and one shell per recipe preserves line breaks inside them.
 GIVEN := $(foreach name,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $(name)))),$(name)))

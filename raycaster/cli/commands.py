@@ -59,7 +59,7 @@ COMMANDS: Mapping[str, Command] = {
 }
 
 
-NOT_OF_MAKE = ("completion", "import", "options", "results", "verify dvi")
+NOT_OF_MAKE = ("completion", "import", "options", "results", "verify coverage", "verify dvi")
 """Commands that are not make targets; `.venv/bin/raycaster` runs them."""
 
 
