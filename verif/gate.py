@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
 """`raycaster verify gate`: check that tests still notice each fault that they noticed when `gate.json` was written.
 
-Mutants are a few faults per leaf test, which `raycaster verify mutate` plants and replays. In all other tests of
-`gate.json`, hardware, boards, wrappers, drivers, firmware or proofs are broken. A test that passes has noticed its
-fault; one that plants several calls `record_property("planted", count)`. A fault that `make test` noticed must not
-become one that only slow tests notice. The entry of a test that was renamed is edited by hand; `--freeze` fills in the
-faults.
+Mutants are a few faults per leaf test, which `raycaster verify mutate` plants and replays. All other tests of
+`gate.json` break hardware, boards, wrappers, drivers, firmware or proofs. A test that passes has noticed its fault; one
+that plants several calls `record_property("planted", count)`. A fault that `make test` noticed must not become one that
+only slow tests notice. The entry of a renamed test is edited by hand; `--freeze` fills in the faults.
 """
 
 from __future__ import annotations
@@ -14,10 +13,10 @@ import argparse
 import json
 import subprocess
 import sys
+import textwrap
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -38,8 +37,8 @@ LEAVES, MUTANTS = "leaves", 7
 SPEEDS, SOUND = ("quick", "slow"), ("sound", "-")
 """Parameter sets of `make test`, and those with the marker `slow`; names of parameter sets without a fault."""
 
-Fates = Mapping[str, Mapping[str, str]]
-"""By speed and parameter set: a 1 for each fault that is noticed, 0 for others; for mutants, a digest of them too."""
+Fates = Mapping[str, Mapping[str, int | str]]
+"""By speed and parameter set: number of faults that are noticed; for mutants, a 1 for each, and a digest of all."""
 
 
 @dataclass(frozen=True)
@@ -54,8 +53,8 @@ class Planting:
         """Return the file that keeps the faults that were found."""
         return self.directory / f"{self.test.replace('::', '-')}-{self.speed}.pickle"
 
-    def run(self) -> dict[str, str]:
-        """Return the faults that the test notices, by the name of the parameter set."""
+    def run(self) -> dict[str, int]:
+        """Return the number of faults that the test notices, by the name of the parameter set."""
         report = self.place().with_suffix(".xml")
         report.parent.mkdir(parents=True, exist_ok=True)
         words = ["-q", "-m", "slow" if self.speed == "slow" else "not slow", f"--junitxml={report.resolve()}"]
@@ -67,7 +66,7 @@ class Planting:
             name = case.get("name", "").partition("[")[2][:-1] or "it"
             if name not in SOUND and not any(case.findall(outcome) for outcome in ("failure", "error", "skipped")):
                 planted = case.find("properties/property[@name='planted']")
-                found[name] = "1" * (1 if planted is None else int(planted.get("value", "")))
+                found[name] = 1 if planted is None else int(planted.get("value", ""))
         return found
 
 
@@ -76,36 +75,38 @@ def mutants_of(arguments: argparse.Namespace, console: Console) -> Fates:
     found: dict[str, dict[str, str]] = {speed: {} for speed in SPEEDS}
     quick = {recording_name(one.partition("::")[2]) for sets in leaf_tests("-m", "not slow").values() for one in sets}
     results, _ = mutate(leaves_of_modules(), MUTANTS, SEED, arguments, console)
-    for result in sorted(results, key=lambda result: result.recording):
-        caught = "".join(str(int(mutant.caught >= 0)) for mutant in result.mutants)
-        speed = SPEEDS[result.recording not in quick]
-        found[speed][result.recording] = f"{caught} {digest(*map(str, result.mutants))[:6]}"
+    for one in sorted(results, key=lambda result: result.recording):
+        caught = "".join(str(int(mutant.caught >= 0)) for mutant in one.mutants)
+        found[SPEEDS[one.recording not in quick]][one.recording] = f"{caught} {digest(*map(str, one.mutants))[:6]}"
     return found
 
 
-def lost(before: str, now: str) -> bool:
-    """Return True if one of the faults is no longer noticed, or a smaller share, if other mutants were chosen."""
-    (faults, *chosen), (faults_now, *chosen_now) = before.split(), now.split()
-    if chosen == chosen_now:
-        return any(was > is_now for was, is_now in zip_longest(faults, faults_now, fillvalue="0"))
-    return faults_now.count("1") * len(faults) < faults.count("1") * len(faults_now)
+def count(*fates: int | str) -> int:
+    """Count the faults that are noticed."""
+    return sum(fate if isinstance(fate, int) else fate.split()[0].count("1") for fate in fates)
 
 
-def differences(test: str, before: Fates, now: Fates) -> list[str]:
+def lost(before: int | str, now: int | str) -> bool:
+    """Return True if fewer faults are noticed, or if one of the same mutants is no longer caught."""
+    if isinstance(before, str) and isinstance(now, str) and before.split()[1] == now.split()[1]:
+        return any(was > is_now for was, is_now in zip(before, now, strict=True))
+    return count(now) < count(before)
+
+
+def differences(test: str, before: Fates, now: Fates) -> Iterator[str]:
     """Describe the faults of a test that were noticed before, and now are not or only by slow tests."""
-    found, anywhere = [], {**now["slow"], **now["quick"]}
-    for name, faults in {**before["slow"], **before["quick"]}.items():
-        faults_now = anywhere.get(name, "0")
-        if lost(faults, faults_now):
-            found.append(f"{test}[{name}]: noticed before {faults}, now {faults_now}")
-        elif name in before["quick"] and name not in now["quick"]:
-            found.append(f"{test}[{name}]: noticed by slow tests only")
-    return found
+    for speed in SPEEDS:
+        there = {**now["slow"], **now["quick"]} if speed == "slow" else now["quick"]
+        for name, fate in before[speed].items():
+            if lost(fate, there.get(name, 0)):
+                yield f"{test}[{name}]: noticed by {speed} tests before {fate}, now {there.get(name, 0)}"
 
 
-def count(fates: Fates, *speeds: str) -> int:
-    """Count the faults that are noticed at these speeds."""
-    return sum(fate.split()[0].count("1") for speed in speeds for fate in fates[speed].values())
+def written(entries: Mapping[str, Fates]) -> str:
+    """Return the text of `gate.json`: a paragraph per test, whose lines break between parameter sets."""
+    texts = (f"{json.dumps(test)}: {json.dumps(entry, indent=0)}".replace(" ", "\0") for test, entry in entries.items())
+    filled = (textwrap.fill(text, 120, break_long_words=False, break_on_hyphens=False) for text in texts)
+    return "{\n" + ",\n".join(filled).replace("\0", " ") + "\n}\n"
 
 
 def command_parser() -> CommandParser:
@@ -137,13 +138,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         found = run_jobs("tests", Planting.run, jobs, make_executor, console, kept=kept)
     for job, noticed in zip(jobs, found, strict=True):
         now.setdefault(job.test, {})[job.speed] = noticed
-    table = Table("test", "kind", "before", "now", "in make test", title="Faults that tests notice")
+    table = Table("test", "before", "now", title="Faults that tests notice")
     for test, old in asked.items():
-        table.add_row(test, old["by"], count(old, *SPEEDS), count(now[test], *SPEEDS), count(now[test], "quick"))
+        table.add_row(test, *(count(*one["quick"].values(), *one["slow"].values()) for one in (old, now[test])))
     console.print(table)
     if arguments.freeze:
-        frozen |= {test: {"by": entry["by"]} | now[test] for test, entry in asked.items()}
-        FROZEN.write_text(json.dumps(frozen, indent=1) + "\n")
+        FROZEN.write_text(written(frozen | now))
         return 0
     worse = [line for test, entry in asked.items() for line in differences(test, entry, now[test])]
     console.print(*worse, sep="\n", style="red", soft_wrap=True)

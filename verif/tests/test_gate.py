@@ -5,24 +5,15 @@ from __future__ import annotations
 
 import json
 
-import pytest
-
-from raycaster.verif import gate
-from raycaster.verif.gate import FROZEN, LEAVES, TESTS
+from raycaster.verif.gate import FROZEN, LEAVES, TESTS, differences
 
 
-@pytest.mark.slow
-def test_a_fault_that_is_not_noticed_is_reported(tmp_path, monkeypatch, capsys):
-    """The entry of a test that is gone is reported; that of a test with five faults is found as it was frozen."""
-    known = "test_driver.py::test_a_fault_in_the_access_is_noticed"
-    entries = {
-        known: json.loads(FROZEN.read_text())[known],
-        "test_driver.py::test_gone": {"by": "bus", "quick": {"it": "1"}, "slow": {}},
-    }
-    monkeypatch.setattr(gate, "FROZEN", tmp_path / "gate.json")
-    gate.FROZEN.write_text(json.dumps(entries))
-    assert gate.main(["--jobs", "1", "--build", str(tmp_path)]) == 1
-    assert "test_driver.py::test_gone[it]: noticed before 1, now 0" in capsys.readouterr().out.splitlines()
+def test_a_fault_that_is_not_noticed_is_reported():
+    """Fewer faults, another one of the same mutants, and a fault that only slow tests notice now."""
+    before = {"quick": {"fewer": 2, "mutants": "0111 a", "slower": 1, "more": 1}, "slow": {"quicker": 1, "gone": 1}}
+    now = {"quick": {"fewer": 1, "mutants": "1011 a", "quicker": 1, "more": 2}, "slow": {"slower": 1}}
+    lines = differences("test", before, now)
+    assert [line.partition("]")[0] for line in lines] == ["test[fewer", "test[mutants", "test[slower", "test[gone"]
 
 
 def test_each_entry_is_a_test():
