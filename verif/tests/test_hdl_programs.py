@@ -2,7 +2,7 @@
 """Programs of every kind that the converter accepts do the same in MyHDL, Icarus and Verilator; Yosys reads them."""
 
 import pytest
-from hdl_blocks import random_inputs
+from hdl_blocks import Pair, random_inputs, swap
 from myhdl import (
     Signal,
     always,
@@ -45,55 +45,7 @@ def argument(maker):
     return bit() if maker == 1 else unsigned(maker) if maker > 0 else signed(-maker)
 
 
-STATES = enum("IDLE", "BUSY", "DONE")
-
-
-@program(clk=1, step=1, half=lambda: Signal(bool(1)), count=lambda: Signal(intbv(5)[3:]), far=-41, busy=1)
-def registers_at_power_up(clk, step, half, count, far, busy):
-    state = Signal(STATES.BUSY)
-    low = Signal(intbv(-3, min=-8, max=8))
-    wide = Signal(intbv(-(1 << 38) - 1, min=-(1 << 39), max=1 << 39))
-
-    @always(clk.posedge)
-    def go():
-        half.next = not half
-        if half and step:
-            count.next = (count + 3) % 8
-            low.next = -low
-            wide.next = -wide
-            far.next = wide + low
-        if count == 7:
-            state.next = STATES.DONE
-
-    @always_comb
-    def look():
-        busy.next = state == STATES.BUSY
-
-    return instances()
-
-
-@program(clk=1, index=2, write=1, d=4, alike=4, apart=4, fixed=4)
-def memories_at_power_up(clk, index, write, d, alike, apart, fixed):
-    sevens = [Signal(intbv(7)[4:]) for _ in range(4)]
-    others = [Signal(intbv(3 * n)[4:]) for n in range(4)]
-    numbers = [Signal(intbv(15 - n)[4:]) for n in range(4)]
-
-    @always(clk.posedge)
-    def fill():
-        if write:
-            sevens[index].next = d
-            others[index].next = d
-
-    @always(clk.posedge)
-    def fetch():
-        alike.next = sevens[index]
-
-    @always_comb
-    def look():
-        apart.next = others[index]
-        fixed.next = numbers[index]
-
-    return instances()
+STATES = enum("IDLE", "end", "go")
 
 
 @program(a=-4, b=-3, q=4, r=3, flag=1, y=-12, narrow=3, less=1, more=1, wide=-37, far=1, chosen=-7)
@@ -204,42 +156,6 @@ def functions_and_latches_read_signals(clk, a, only, around, gate, y, kept, late
     return instances()
 
 
-SAME_NAMES, OTHER_NAMES = enum("IDLE", "end", "count"), enum("PAUSE", "count", "IDLE", "end")
-
-
-@program(clk=1, reset=reset_signal, go=2, y=2)
-def states_of_any_name(clk, reset, go, y):
-    one, other = Signal(SAME_NAMES.IDLE), Signal(OTHER_NAMES.count)
-
-    @always_seq(clk.posedge, reset=reset)
-    def count():
-        step = intbv(0)[2:]
-        step[:] = go
-        if step[0]:
-            one.next = SAME_NAMES.end
-            other.next = OTHER_NAMES.IDLE
-        elif one == SAME_NAMES.end:
-            one.next = SAME_NAMES.count
-        else:
-            other.next = OTHER_NAMES.end
-
-    @always_comb
-    def look():
-        y.next = concat(one == SAME_NAMES.count, other == OTHER_NAMES.end)
-
-    return instances()
-
-
-@block
-def drives_words(clk, words, d):
-    @always(clk.posedge)
-    def fill():
-        for k in range(4):
-            words[k].next = d + k
-
-    return instances()
-
-
 @block
 def reads_words(clk, words, index, y):
     @always(clk.posedge)
@@ -249,55 +165,16 @@ def reads_words(clk, words, index, y):
     return instances()
 
 
-@program(clk=1, d=4, y=5, sum=7, index=2, given=lambda: [unsigned(5) for _ in range(4)])
-def lists_cross_blocks(clk, d, index, given, y, sum):
-    words = [unsigned(5) for _ in range(4)]
-    filling = drives_words(clk, words, d)
-    fetching = reads_words(clk, words, index, y)
-
-    @always_comb
-    def add():
-        sum.next = words[0] + words[2] + given[index]
-
-    return instances()
-
-
-class Side:
-    def __init__(self):
-        self.valid, self.data = bit(), unsigned(4)
-
-
 class Sides:
     def __init__(self):
-        self.left, self.right = Side(), Side()
+        self.left, self.right = Pair(), Pair()
 
 
-@block
-def stage(clk, source, sink):
-    @always(clk.posedge)
-    def go():
-        sink.data.next = source.data
-        sink.valid.next = source.valid
-
-    return instances()
-
-
-@program(clk=1, reset=reset_signal, unused=3, sides=Sides, data=4, valid=1, seen=4)
-def plain_interfaces(clk, reset, unused, sides, data, valid, seen):
+@program(unused=3, sides=Sides)
+def interfaces_in_an_interface(unused, sides):
     inner = Sides()
-    first = stage(clk, inner.left, inner.right)
-    second = stage(clk, sides.left, sides.right)
-
-    @always_comb
-    def enter():
-        inner.left.data.next = data
-        inner.left.valid.next = valid
-
-    @always_seq(clk.posedge, reset=reset)
-    def leave():
-        if inner.right.valid:
-            seen.next = inner.right.data
-
+    entering = swap(sides.left, inner.left)
+    leaving = swap(inner.left, sides.right)
     return instances()
 
 
@@ -475,7 +352,7 @@ class Wires:
         if depth:
             self.more = Wires(depth - 1)
         else:
-            self.words = [Signal(intbv(3)[4:]) for _ in range(3)]
+            self.words = [Signal(intbv(3 + k)[4:]) for k in range(3)]
 
 
 @block
@@ -493,8 +370,8 @@ def shifts(clk, a, row, y):
     return instances()
 
 
-@program(clk=1, a=4, index=1, y=4, z=4, v=4, w=4)
-def lists_driven_in_parts(clk, a, index, y, z, v, w):
+@program(clk=1, a=4, index=1, given=lambda: [unsigned(4) for _ in range(2)], y=4, z=4, v=4, w=4)
+def lists_driven_in_parts(clk, a, index, given, y, z, v, w):
     chain = [unsigned(4) for _ in range(4)]
     links = [delays(clk, chain[k], chain[k + 1]) for k in range(3)]
     low, high = Signal(intbv(3)[4:]), Signal(intbv(5)[4:])
@@ -516,7 +393,7 @@ def lists_driven_in_parts(clk, a, index, y, z, v, w):
     @always_comb
     def end():
         y.next = chain[3]
-        z.next = both[index]
+        z.next = both[index] ^ given[index]
 
     return instances()
 
@@ -746,7 +623,7 @@ class Row:
 
 @program(clk=1, go=1, a=-6, b=6, x=Row, y=10, z=8, w=3)
 def seldom_forms(clk, go, a, b, x, y, z, w):
-    state = Signal(STATES.DONE)
+    state = Signal(STATES.go)
 
     @always_comb
     def choose():
@@ -757,16 +634,16 @@ def seldom_forms(clk, go, a, b, x, y, z, w):
         match state:
             case STATES.IDLE:
                 y.next = concat(True, "01", b[4:2]) + a[:2] + 8
-            case STATES.BUSY:
+            case STATES.end:
                 y.next = (+(a - b) if bool(b) else (b[:3] & a)) % 64 + total
-            case STATES.DONE:
+            case STATES.go:
                 y.next = (int(a) ^ -b) & 63
         z.next = ((b - 40) // 4) & 255
         w.next = concat(go and b[0], state != STATES.IDLE, b[go + 1 : go])
 
     @always(clk.posedge)
     def turn():
-        state.next = STATES.BUSY if go else STATES.IDLE
+        state.next = STATES.end if go else STATES.IDLE
         print("state", state, go, b)
 
     return instances()
@@ -778,10 +655,10 @@ def a_state_in_all_cases(clk, go, y, z):
 
     @always(clk.posedge)
     def turn():
-        if state in (STATES.IDLE, STATES.DONE):
-            state.next = STATES.BUSY
+        if state in (STATES.IDLE, STATES.go):
+            state.next = STATES.end
         elif go:
-            state.next = STATES.DONE
+            state.next = STATES.go
 
     @always_comb
     def choose():
@@ -799,9 +676,9 @@ def a_state_in_all_cases(clk, go, y, z):
     def look():
         if state == STATES.IDLE:
             y.next = 1
-        elif state == STATES.BUSY:
+        elif state == STATES.end:
             y.next = 2
-        elif state == STATES.DONE:
+        elif state == STATES.go:
             y.next = 3
 
     return instances()
