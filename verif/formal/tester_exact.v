@@ -38,7 +38,15 @@ wire [WIDE-1:0] way_u = slope_u * n, way_v = slope_v * n;
 wire signed [WIDE-1:0] whole_u = ahead ? way_u / e : 0, whole_v = ahead ? way_v / e : 0;
 wire more_u = ahead && way_u % e != 0, more_v = ahead && way_v % e != 0;
 
-`include "quotient_point.v"
+// P is base + more, or base - more, with 0 <= more < 1.
+function within(input signed [WIDE-1:0] base, input more, input negative, input signed [WIDE-1:0] low,
+                input signed [WIDE-1:0] high);
+    if (negative) within = (more ? base > low : base >= low) && base <= high;
+    else within = base >= low && (more ? base < high : base <= high);
+endfunction
+function beyond(input signed [WIDE-1:0] base, input more, input negative, input signed [WIDE-1:0] place);
+    beyond = negative ? base < place || base == place && more : base > place || base == place && more;
+endfunction
 wire signed [WIDE-1:0] base_u = back_u ? eye_u - whole_u : eye_u + whole_u;
 wire signed [WIDE-1:0] base_v = back_v ? eye_v - whole_v : eye_v + whole_v;
 wire in_mirror = on_u && base_u == mirror_place && !more_u || on_v && base_v == mirror_place && !more_v;

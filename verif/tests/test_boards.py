@@ -83,20 +83,6 @@ def test_a_wrong_description_is_refused(tmp_path, name, right, wrong, complaint)
     assert "\n" not in str(error.value)
 
 
-SERIAL_PINS = {
-    "colorlight_i9": ("H18", "J17"), "icebreaker": ("6", "9"), "icepi_zero": ("K16", "K15"),
-    "tang_nano_20k": ("70", "69"), "ulx3s": ("M1", "L4"),
-}  # fmt: skip
-"""Pins that receive and that send, as the sources of each description have them."""
-
-
-def test_the_serial_port_has_the_right_pins():
-    """Neither line is inverted: both are high while idle."""
-    for board in BOARDS:
-        sends = [board.pins[name] for name, value in board.outputs.items() if value == "serial"]
-        assert (board.pins[board.inputs["serial"]], *sends) == SERIAL_PINS[board.name], board.name
-
-
 def test_a_description_is_missing(tmp_path):
     with pytest.raises(BoardError, match=r"board\.toml: cannot be read: No such file or directory$"):
         load_board(tmp_path)

@@ -8,7 +8,7 @@ import pytest
 from fates import margin_of, may_hit_mask
 from vectors import AXES, any_config, any_place, by, by_axis, designs, exact_config, named
 
-from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError
+from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.design.decide import configure
 from raycaster.golden.engines import model_of
 from raycaster.golden.rays import primary_slopes
@@ -266,11 +266,6 @@ def test_which_designs_cull(options, culls, name):
         # The worst case is the same with and without culling.
         cycles = buffered_engine_of(config).group_cycles
         assert cycles(config) == cycles(configure(**{**options, "culling": None}))
-
-
-def test_the_span_engine_does_not_cull():
-    with pytest.raises(ConfigurationError, match=r"^culling: the span engine has no groups of columns; leave it out"):
-        configure(engine="span", culling="1")
 
 
 def any_rect(random: np.random.Generator, table: Sequence[dict[str, int]]) -> dict[str, int]:
