@@ -7,7 +7,6 @@ of these files, `file: text -> text`, and before what it prints. Escapes are Pyt
 
 from __future__ import annotations
 
-import datetime
 import re
 import shlex
 import shutil
@@ -50,7 +49,7 @@ def said(command: str, directory: Path) -> str:
         if words[start] == "make":
             patch.setenv(FROM_MAKE, "1")
         printed = refusal(directory, *words[start + 1 :])
-    for found, meant_by in ((f"{ROOT}/", "CLONE/"), (f"{datetime.date.today():%Y%m%d}", "TODAY"), (r" 0:00:\d\d", "")):
+    for found, meant_by in ((f"{ROOT}/", "CLONE/"), (r" 0:00:\d\d", "")):
         printed = re.sub(found, meant_by, printed)
     return printed
 
