@@ -236,7 +236,7 @@ def test_a_fault_is_noticed_in_traffic(noticed: Noticed, fault):
 
 @pytest.mark.slow
 def test_icarus_takes_clocks_that_rest(bench: Bench):
-    """In `make test`, this is the run of the traffic bench without a fault."""
+    """Without a fault, clocks that rest change nothing in traffic."""
     bench(TRAFFIC_BENCH, SMALL[OWN], "icarus", seeds=(1,), defines=GATED)
 
 
