@@ -438,9 +438,7 @@ def command_parser() -> CommandParser:
         "--cells", default="ecp5", metavar="FAMILY", help=f"chip of the netlist: {', '.join(LIBRARIES)} (%(default)s)"
     )
     parser.add_argument("--waves", action="store_true", help="write waveforms next to the pictures")
-    parser.add_argument(
-        "--watch", action="store_true", help="show the scenes again each time one of their files is saved, until Ctrl-C"
-    )
+    parser.add_argument("--watch", action="store_true", help="show scenes again when one is saved, until Ctrl-C")
     add_build_option(parser)
     parser.add_argument(
         "--jobs", type=int, default=2, metavar="N", help="models to build, scenes to simulate at a time (default: 2)"

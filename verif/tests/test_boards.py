@@ -327,7 +327,7 @@ LINKED = ".blue({}),\n    .green(green),\n    .red({}),\n    .pixel(pixel),\n   
         (SERIALISER, "!phase[2] && !phase[3] && !phase[4]", "!phase[3]", "five ones and five zeros"),
         (SERIALISER, "10'b0000011111", "10'b0000111111", "five ones and five zeros"),
         (CLOCKS, ".CLK_DIV(10)", ".CLK_DIV(8)", "change while they are sampled"),
-        (ENCODER, "symbol[9] <= invert", "symbol[9] <= !invert", ""),
+        (ENCODER, "encoded = {invert,", "encoded = {!invert,", ""),
         (ENCODERS, "syncs = {vga_vs, vga_hs}", "syncs = {vga_hs, vga_hs}", "lines|frames|VS"),
         (ENCODERS, ".data(vga_g)", ".data(vga_r)", ""),
     ],

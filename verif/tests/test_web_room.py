@@ -356,6 +356,7 @@ def test_send_to_board(room):
     fixed = engine_word(BOARD) | registers["engine"].fields["fixed"].mask
     live = [written, found("control", commit=1), found("control"), cleared, found("frames.counts", drawn=7)]
     none, drawn = [found("frames.status"), found("frames.counts", drawn=7)], found("frames.counts", drawn=8)
+    exact = configure(engine="exact", turn=True, light=True, materials=True, patterns=True)
     for answers, said in (
         (
             [described(BOARD), *live, *none, found("frames.status"), drawn, found("frames.status")],
@@ -365,10 +366,7 @@ def test_send_to_board(room):
             [described(BOARD), *live, *none, *[found("frames.status", list_full=1)] * 2],
             "Not sent: a frame of it has more runs than the board's list; build it with a longer LIST",
         ),
-        (
-            [described(configure(engine="exact", turn=True, light=True, materials=True, patterns=True)), written],
-            "The board shows this room, with the exact engine.",
-        ),
+        ([described(exact), written], "The board shows this room, with the exact engine."),
         ([described(BOARD, id=1)], "Not sent: what answers is no ray tracer of this version"),
         ([described(BOARD, version=2 << 16)], "Not sent: what answers is no ray tracer of this version"),
         ([described(BOARD, engine=fixed)], "Not sent: the design has a scene built in"),
@@ -392,7 +390,8 @@ def test_send_to_board(room):
         room.wait_for_function(f"find('room-said').textContent === {said!r}")
         frames, rate = room.evaluate("[window.sentToBoard, window.boardRate]")
         question = [LEAD, *framed(asked)]
-        assert frames[:2] == ([question] * 2, [question], [question, room_bytes(scene, BOARD)])[min(len(answers), 2)]
+        sent = room_bytes(scene, exact if "exact" in said else BOARD)
+        assert frames[:2] == ([question] * 2, [question], [question, sent])[min(len(answers), 2)]
         assert len(frames) == max(3 * (not answers), len(answers))
         assert len(frames) < 5 or frames[4] == [LEAD, *full]
         assert rate == 0, "the port is open"
