@@ -138,12 +138,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         found = run_jobs("tests", Planting.run, jobs, make_executor, console, kept=kept)
     for job, noticed in zip(jobs, found, strict=True):
         now.setdefault(job.test, {})[job.speed] = noticed
-    table = Table("test", "before", "now", title="Faults that tests notice")
+    table = Table("test", "kind", "before", "now", title="Faults that tests notice")
     for test, old in asked.items():
-        table.add_row(test, *(count(*one["quick"].values(), *one["slow"].values()) for one in (old, now[test])))
+        table.add_row(test, old["by"], *(count(*(one["quick"] | one["slow"]).values()) for one in (old, now[test])))
     console.print(table)
     if arguments.freeze:
-        FROZEN.write_text(written(frozen | now))
+        FROZEN.write_text(written(frozen | {test: entry | now[test] for test, entry in asked.items()}))
         return 0
     worse = [line for test, entry in asked.items() for line in differences(test, entry, now[test])]
     console.print(*worse, sep="\n", style="red", soft_wrap=True)
