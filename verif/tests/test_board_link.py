@@ -163,7 +163,7 @@ def typed(text: str, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 def test_walk(monkeypatch, capsys):
     """Each key moves the camera as on a VT100, whose arrows are A up, B down, C right and D left."""
     device, path = Device(SPAN), find_scene("lamplight")
-    # Twice as often to one side as to the other, so that no two keys can be exchanged.
+    # Opposite keys are pressed unequally often, so that exchanged keys end elsewhere.
     with typed("wwwsddarrf\x1b[A\x1b[A\x1b[B\x1b[C\x1b[C\x1b[Dxq", monkeypatch):
         board_walk.main([str(path), "--port", device.port])
     walker = Walker(load_scene(path), SPAN)
@@ -206,7 +206,7 @@ def test_a_room_that_does_not_fit():
 
 
 def test_a_room_that_is_not_drawn(monkeypatch):
-    """What the board shows then is not the room that was sent."""
+    """The command fails, as the board still shows the room before."""
     monkeypatch.setattr("raycaster.play.board.SHOWN", 0.1)
     for draws, said in (
         ({"frames.status": {"list_full": 1}}, "has more runs than the list of the design on "),

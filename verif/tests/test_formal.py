@@ -9,7 +9,7 @@ from fractions import Fraction
 
 import pytest
 import z3
-from conftest import faulty
+from conftest import faulty, refused
 
 from raycaster.runs.outcomes import kept_outcome
 from raycaster.verif.formal.faults import model_with_faults, outcome
@@ -51,6 +51,10 @@ def test_every_proof_has_a_fault():
     """A property that no fault contradicts may claim nothing."""
     assert {proof.name for proof in FAULTY} == {proof.name for proof in PROPERTIES}
     assert sorted(LEMMA_FAULTS) == sorted(lemma.label for lemma in LEMMAS)
+
+
+def test_an_unknown_property_is_refused():
+    assert "invalid choice: 'no-such' (choose from 'video-timing'" in refused(main, "--property", "no-such")
 
 
 def test_a_proof_is_kept_until_its_property_changes(output, monkeypatch, names_for_digests):

@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any
 
 import pytest
+from conftest import refused
 
 from raycaster.hdl.leaf import Leaf
 from raycaster.hdl.signals import bit, reset_signal, unsigned
@@ -22,6 +23,7 @@ from raycaster.verif.mutation.mutate import (
     complaints,
     leaf_tests,
     leaves_of_modules,
+    main,
     recordings,
 )
 from raycaster.verif.recording import record as record_run
@@ -58,3 +60,7 @@ def test_every_block_has_recordings():
     assert {*recordings(known, tests).values()} == {*known}
     with pytest.raises(MutationError, match=r"divider: expected sets \['F9'\] of test_divider, got \[\]"):
         recordings({"divider": LeafTest("test_divider", ["F9"])}, tests)
+
+
+def test_an_unknown_module_is_refused():
+    assert "invalid choice: 'adder' (choose from 'apb_bridge'" in refused(main, "--module", "adder")

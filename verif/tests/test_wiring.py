@@ -306,8 +306,8 @@ SIZES = {
     "5CSEMA5F31C6": (32_070, 3 * 87, "cyclonev"),
     "10M50DAF484C7G": (49_760, 288, "cycloneive"),
 }
-"""Logic elements or, with Yosys's `cyclonev`, ALMs; and multipliers of 9 bits, of which a DSP block has three. Numbers
-are those of Quartus's reports."""
+"""Sizes by order code, as in Quartus's reports: logic elements (ALMs of the Cyclone V), multipliers of 9 bits (three in
+each DSP block of the Cyclone V), and the family for which Yosys counts cells."""
 
 
 @pytest.mark.parametrize("name", board_names(Board))

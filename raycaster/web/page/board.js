@@ -109,7 +109,7 @@ const RayCasterBoard = (() => {
       return unpack(name, (await request([LEAD, ...framed(asked)], asked[0], 2))[0]);
     };
     const wait = async (holds) => {
-      while (!(await holds())) if (Date.now() > end) throw new Error("the board has drawn no frame of it for 3 seconds");
+      while (!(await holds())) if (Date.now() > end) throw new Error(`the board has drawn no frame of it for ${SHOWN / 1000} s`);
     };
     await wait(async () => !(await read("control")).commit);
     // A frame of the scene before may have set it.
