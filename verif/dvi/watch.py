@@ -141,7 +141,8 @@ def watch(
         again: number of frames to record after a second reset, in the middle of a frame; they follow the others.
         placed: True if the Verilog is a netlist; then nothing checks when the symbols of a DVI link are sampled.
         blank: number of frames after each reset that have no picture yet; these are not among the others.
-        sends: bytes that a computer sends to the serial port from the first frame on, at the design's rate.
+        sends: bytes that a computer sends to the serial port from the first frame on, 3 per cent slower than the design
+            expects.
 
     Returns:
         The frames, each uint8 (visible lines, visible pixels, 3).
@@ -166,7 +167,7 @@ def watch(
     if sends:
         directory.mkdir(parents=True, exist_ok=True)
         (directory / "sends.txt").write_text("".join(f"{byte:02x}\n" for byte in sends))
-        arguments += [f"+sends={len(sends)}", f"+bit_ps={round(1e12 / design.baud)}"]
+        arguments += [f"+sends={len(sends)}", f"+bit_ps={round(1.03e12 / design.baud)}"]
     rates, recorded = _record(board, sources, design, directory, simulator, arguments, placed)
     seen = []
     for count, rate, lines in zip((frames, again), rates, recorded, strict=False):
