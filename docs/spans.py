@@ -10,9 +10,10 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from raycaster.design.decide import configure
 from raycaster.golden.spans import Chain, Drawing, Entry, Line, SpanModel, row_slope
 from raycaster.report.plots import BLUE, GREY, VERMILION, new_figure, styled, ticks
-from raycaster.rtl.engines import SPAN
+from raycaster.rtl.engines import EXACT, SPAN
 from raycaster.runs.outcomes import table
 from raycaster.scene import Camera, Rectangle, Scene, load_scene, packaged_scenes
 from raycaster.screens import LIST_SCREENS, Screen
@@ -216,6 +217,16 @@ def sides(low: tuple[int, ...], high: tuple[int, ...]) -> list[tuple[Any, Any]]:
     return [((*start, z_0), (*stop, z_1)) for start, stop in ends]
 
 
+BEAM = "beam engine of version 1.0"
+"""An engine that took a cycle per column, and up to 32 rectangles."""
+
+
+def exact_cycles(columns: int, rectangles: int, reflections: int) -> int:
+    """Return the cycles of a row in a unit of the exact engine."""
+    config = configure(engine="exact", units=1, rectangles=rectangles, reflections=reflections, allow_underrun=True)
+    return columns * EXACT.group_cycles(config)
+
+
 @styled
 def rectangles_picture() -> Figure:
     """Draw the mean cycles of a row against the rectangles of its scene."""
@@ -228,7 +239,11 @@ def rectangles_picture() -> Figure:
     scenes = [scene for scene in map(load_scene, packaged_scenes().values()) if not scene.light]
     cycles = [(len(scene.rect), mean_cycles(scene, SIZES[0])) for scene in scenes]
     ax.plot(*zip(*cycles, strict=True), "x", color=BLUE, markersize=4, label="packaged scenes without a light")
-    ax.plot(COUNTS[::5], 2 * [CLOCKS], color=GREY, linestyle=":", label="60 frames of 240 rows at 25 MHz")
+    most = [count for count in COUNTS if count <= EXACT.facts.rectangles]
+    slow = [exact_cycles(SIZES[0], count, 0) for count in most]
+    ax.plot(most, slow, color=EXACT.facts.colour, linestyle="--", label="exact engine, 0 reflections")
+    ax.plot(most[:: len(most) - 1], 2 * [SIZES[0]], color=GREY, linestyle=":", label=BEAM)
+    ax.plot(COUNTS[::5], 2 * [CLOCKS], color=GREY, linestyle="-.", label="60 frames of 240 rows at 25 MHz")
     ax.set_xscale("log")
     ax.set_yscale("log")
     ticks(ax.xaxis)
@@ -247,7 +262,10 @@ def cycles_picture() -> Figure:
     for marker, (name, reflections, points) in zip("os^", measured(), strict=True):
         label = f"{name}, {reflections} reflection{'s' * (reflections != 1)}"
         ax.plot(*zip(*points, strict=True), marker=marker, color=SPAN.facts.colour, markersize=4, label=label)
-    ax.plot([320, 3840], [320, 3840], color=GREY, linestyle=":", label="a cycle per column")
+    scene = load_scene(packaged_scenes()[MEASURED[1]])
+    slow = [exact_cycles(columns, len(scene.rect), scene.reflections) for columns in SIZES]
+    ax.plot(SIZES, slow, color=EXACT.facts.colour, linestyle="--", label=f"exact engine, {MEASURED[1]}")
+    ax.plot(SIZES, SIZES, color=GREY, linestyle=":", label=BEAM)
     ax.set_xscale("log")
     ax.set_yscale("log")
     ticks(ax.xaxis)
