@@ -16,6 +16,7 @@ from raycaster.configuration import Configuration
 from raycaster.errors import UserError
 from raycaster.fpga.board import OpenBoard
 from raycaster.fpga.multipliers import register_products
+from raycaster.fpga.placement import draw_placement
 from raycaster.rtl.common.widths import pixel_bits
 from raycaster.rtl.span.lists import end_bits
 from raycaster.rtl.span.run_memory import LARGE_BANK
@@ -285,19 +286,23 @@ def place_and_route(command: Sequence[str], again: Sequence[str], directory: Pat
     Args:
         command: nextpnr's command line, without the options for reports and logs.
         again: further options for the second run; if empty, there is no second run.
-        directory: working directory; gets `report.json`, `nextpnr.log` and, from a second run, `again.log`.
+        directory: working directory; gets `report.json`, `placement.png`, `nextpnr.log` and, from a second run,
+            `again.log`.
 
     Returns:
         The completed process of the run whose result is kept.
     """
-    command = [*command, "--report", "report.json", "--timing-allow-fail", "-q"]
+    placed = directory / "placed.json"
+    command = [*command, "--report", "report.json", "--write", placed.name, "--timing-allow-fail", "-q"]
     start = time.monotonic()
     done = run_program([*command, "--log", "nextpnr.log"], directory, LONGEST)
-    if done.returncode or not again or not _missed(directory / "report.json"):
-        return done
-    with suppress(TimeoutExpired):
-        seconds = max(LEAST_AGAIN, TIMES_AGAIN * (time.monotonic() - start))
-        return run_program([*command, *again, "--log", "again.log"], directory, seconds)
+    if again and not done.returncode and _missed(directory / "report.json"):
+        with suppress(TimeoutExpired):
+            seconds = max(LEAST_AGAIN, TIMES_AGAIN * (time.monotonic() - start))
+            done = run_program([*command, *again, "--log", "again.log"], directory, seconds)
+    if placed.exists():
+        draw_placement(placed, directory / "placement.png")
+        placed.unlink()
     return done
 
 

@@ -14,7 +14,7 @@ from conftest import called
 from raycaster.convert.take_home import TOP
 from raycaster.design.decide import configure
 from raycaster.errors import UserError
-from raycaster.fpga import area, flows
+from raycaster.fpga import area, flows, placement
 from raycaster.fpga.board import Board, QuartusBoard, board_names, find_board
 from raycaster.fpga.cells import FAMILIES, Area, measure, measure_modules
 from raycaster.runs.outcomes import kept_outcome
@@ -134,6 +134,18 @@ def test_a_missed_clock_is_routed_again(reached, code, kept, runs, tmp_path, mon
     logs = [("--again" in command, command[-1]) for command, _ in made]
     assert logs == [(False, "nextpnr.log"), (True, "again.log")][:runs]
     assert made[-1][1] == (flows.LONGEST, flows.LEAST_AGAIN)[runs - 1]
+
+
+def test_where_the_blocks_are(tmp_path):
+    """A tile belongs to the block with most of its cells; small blocks belong to those around them."""
+    cells = {f"a_i.{at}": f"X{at}/Y0/SLICEA" for at in range(8)} | {"a_i.b.1": "X0Y1/LUT", "c": "X3Y1/LUT"}
+    cells |= {f"d.{at}": f"X2Y1/LUT{at}" for at in range(9)} | {f"d.e.{at}": f"X{1 + at % 2}Y1/DFF" for at in range(14)}
+    placed = {name: {"attributes": {"NEXTPNR_BEL": place}} for name, place in cells.items()}
+    path = tmp_path / "placed.json"
+    path.write_text(json.dumps({"modules": {"top": {"cells": placed}, "LUT4": {"cells": {}}}}))
+    tiles, names = placement.tiles_of(path)
+    assert [names[number] for number in tiles[0]] == 8 * ["a"]
+    assert [names[number] for number in tiles[1, :4]] == ["a", "d.e", "d", "all else"] and set(tiles[1, 4:]) == {-1}
 
 
 def test_a_module_is_routed_alone(tmp_path, monkeypatch, capsys):
