@@ -71,17 +71,16 @@ public:
     }
 
 protected:
-    // Called before each rising edge of the clock; to be overridden to observe more.
+    // Called before each rising edge of the clock, and at each rising edge of the monitor's clock; to be overridden to
+    // observe more.
     virtual void see() {}
+    virtual void sample() {}
 
-private:
-    bool vga_clk = false, vs = true;
-#if CLOCKS_PER_BIT
-    SerialPort serial;
-#endif
-
-    // Extracts a pixel's channel, with its lowest bit at `low`.
-    static uint32_t channel(uint32_t colour, int low) { return colour >> low & ((1u << COLOUR_BITS) - 1); }
+    // Extracts the red, green and blue of a pixel, each with its lowest bit at `low`.
+    uint32_t colour(int low) const {
+        const auto channel = [low](uint32_t of) { return of >> low & ((1u << COLOUR_BITS) - 1); };
+        return channel(top.vga_r) | channel(top.vga_g) << 8 | channel(top.vga_b) << 16;
+    }
 
     // Runs a clock; returns true if the vertical sync begins.
     bool clock() {
@@ -97,8 +96,8 @@ private:
             if (top.vga_clk && !vga_clk) {
                 if (top.vga_blank_n)
                     for (int low = 0; low < PIXELS * COLOUR_BITS; low += COLOUR_BITS)
-                        pixels.push_back(channel(top.vga_r, low) | channel(top.vga_g, low) << 8 |
-                                         channel(top.vga_b, low) << 16 | 0xff000000u);
+                        pixels.push_back(colour(low) | 0xff000000u);
+                sample();
                 sync = top.vga_vs == VS_ACTIVE && !vs;
                 vs = top.vga_vs == VS_ACTIVE;
             }
@@ -110,6 +109,12 @@ private:
         clocks++;
         return sync;
     }
+
+private:
+    bool vga_clk = false, vs = true;
+#if CLOCKS_PER_BIT
+    SerialPort serial;
+#endif
 };
 
 #endif

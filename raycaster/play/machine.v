@@ -24,6 +24,7 @@ module machine #(
     output wire [COLOUR_BITS-1:0]  vga_r,
     output wire [COLOUR_BITS-1:0]  vga_g,
     output wire [COLOUR_BITS-1:0]  vga_b,
+    output wire                    vga_hs,
     output wire                    vga_vs,
     output wire                    vga_blank_n,
     output wire                    vga_clk,
@@ -31,6 +32,7 @@ module machine #(
     output wire                    start_screen,    // a picture begins after this clock
     output wire                    takes_scene,     // the committed scene goes live with this clock
     output wire                    again,           // with start_screen, the last picture is shown again
+    output wire                    late,            // a row's time ends before the row is complete
     output wire                    written,         // the ray tracer accepts a write with this clock
     output wire [ADDRESS_BITS-1:0] address,
     output wire [3:0]              byteenable,
@@ -42,7 +44,7 @@ module machine #(
 `endif
 );
 
-wire vga_hs, vga_sync_n, reset;
+wire vga_sync_n, reset;
 
 `ifdef SYSTEM
 `define MODULE system.ray_caster_module_i
@@ -98,9 +100,11 @@ assign start_screen = `MODULE.progress_start_screen && !reset;
 `ifdef WHOLE_FRAMES
 assign takes_scene = `MODULE.progress_take_scene && !reset;
 assign again = `MODULE.progress_frames_again;
+assign late = 1'b0;
 `else
 assign takes_scene = start_screen;
 assign again = 1'b0;
+assign late = `MODULE.progress_underrun;
 `endif
 assign written = `MODULE.avs_s0_write && !`MODULE.avs_s0_waitrequest && !reset;
 assign address = `MODULE.avs_s0_address;

@@ -62,10 +62,11 @@ private:
 };
 
 #ifdef TAPS
-// Records the tapped signals of a unit in every clock in which it computes a chosen pixel.
+// Records the tapped signals of a unit in every clock in which it computes a chosen pixel, and what a monitor receives.
 class WatchedMachine : public Machine {
 public:
-    std::vector<uint32_t> samples; // TAPS numbers per clock
+    std::vector<uint32_t> samples;  // TAPS numbers per clock
+    std::vector<uint32_t> received; // per clock of the monitor: red, green, blue and a byte with the bits of Received
 
     explicit WatchedMachine(VerilatedContext *context) : Machine{context} { top.tapped_unit = NONE; }
 
@@ -78,8 +79,20 @@ public:
         samples.clear();
     }
 
+    // Run on until this many clocks of the monitor were received since the last call, or to the vertical sync; return
+    // true if it has begun.
+    bool scan(uint32_t count) {
+        if (ended) pixels.clear();
+        received.erase(received.begin(), received.begin() + handed);
+        scans = true;
+        for (ended = false; !ended && received.size() < count;) ended = clock();
+        handed = received.size();
+        return ended;
+    }
+
 protected:
     void see() override {
+        late |= top.late;
         if (top.tapped_unit == NONE) return;
         const uint32_t *taps = top.tapped.data();
         if (taps[SCREEN_TO_RAY]) records = taps[ROW] == watched_row && taps[GROUP] == watched_group;
@@ -88,12 +101,21 @@ protected:
         if (taps[DONE]) top.tapped_unit = NONE;
     }
 
+    void sample() override {
+        if (!scans) return;
+        const uint32_t bits = VISIBLE * top.vga_blank_n | HS * top.vga_hs | VS * top.vga_vs | LATE * late;
+        received.push_back(colour(0) | bits << 24);
+        late = false;
+    }
+
 private:
     static constexpr uint8_t NONE = 0xff;
-    enum { ROW, GROUP, SCREEN_TO_RAY, DONE }; // FIRST of taps.py
+    enum { ROW, GROUP, SCREEN_TO_RAY, DONE };             // FIRST of taps.py
+    enum Received { VISIBLE = 1, HS = 2, VS = 4, LATE = 8 }; // levels, and a row that was late since the clock before
 
     uint32_t watched_row, watched_group;
-    bool records = false;
+    size_t handed = 0; // clocks of `received` that the last scan returned
+    bool records = false, scans = false, ended = true, late = false;
 };
 
 WatchedMachine *machine;
@@ -221,4 +243,15 @@ EXPORT(watch) void watch(uint32_t unit, uint32_t row, uint32_t group) { machine-
 // Recorded taps: TAPS numbers per clock.
 EXPORT(samples) const uint32_t *samples() { return machine->samples.data(); }
 EXPORT(sample_count) uint32_t sample_count() { return machine->samples.size(); }
+
+// Run on for some clocks of the monitor, or to the vertical sync; return 1 if it has begun.
+EXPORT(scan) uint32_t scan(uint32_t count) {
+    const bool ended = machine->scan(count);
+    follow();
+    return ended;
+}
+
+// What the monitor received in these clocks: red, green, blue and the bits of Received.
+EXPORT(received) const uint32_t *received() { return machine->received.data(); }
+EXPORT(received_count) uint32_t received_count() { return machine->received.size(); }
 #endif

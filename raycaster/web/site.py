@@ -38,7 +38,7 @@ from raycaster.rtl.engines import ENGINES, SEED, SPAN
 from raycaster.runs.jobs import processes, run_jobs
 from raycaster.runs.outcomes import RESULTS, kept_outcome, kept_outcomes
 from raycaster.scene import CELLS, COMPLAINTS, PATTERN_KEYS, PATTERNS, Scene, load_scene, packaged_scenes
-from raycaster.screens import LIST_SCREENS, SCREENS
+from raycaster.screens import LIST_SCREENS, SCREENS, Screen
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
 from raycaster.web.taps import tap_facts
@@ -47,7 +47,7 @@ from raycaster.web.wasm import golden_wasm, machine_wasm
 PAGE = Path(__file__).with_name("page")
 SCRIPTS = (
     "vendor/smol-toml", "scene", "hardware", "settings", "text", "room", "page", "engines", "life", "pixel", "plan",
-    "properties", "board", "live",
+    "properties", "board", "live", "monitor",
 )  # fmt: skip
 """Scripts in loading order; `settings.js` is generated."""
 
@@ -77,7 +77,7 @@ class Model:
     options: Mapping[str, Any]
     processor: bool = False
     taps: bool = False
-    """True if the page can watch a ray unit of the design."""
+    """True if the page can watch a ray unit and the monitor's signals of the design."""
 
     draws: bool = False
     """True if the page takes runs from the design, without a monitor."""
@@ -123,8 +123,17 @@ def _build(model: Model, build: Path) -> tuple[bytes, dict[str, Any]]:
         **{name: getattr(screen, name) for name in ("columns", "rows", "horizon_row", "scale", "doubling")},
         "draws": model.draws,
         "first_start": FIRST_START,
-        **({"taps": tap_facts(config)} if model.taps else {}),
+        **({"taps": tap_facts(config), "monitor": _monitor(screen)} if model.taps else {}),
     }
+
+
+def _monitor(screen: Screen) -> dict[str, int]:
+    """Return the timing that a monitor expects, in its pixels and lines, and the levels of its syncs."""
+    return {
+        "columns": screen.horizontal.total, "lines": screen.vertical.total, "hz": screen.pixel_hz,
+        "clocks": screen.clocks_per_pixel, "hs": int(screen.horizontal.active_high),
+        "vs": int(screen.vertical.active_high),
+    }  # fmt: skip
 
 
 def scene_schema() -> dict[str, object]:
@@ -205,7 +214,8 @@ def _cost(path: Path = RESULTS / "features.json") -> dict[str, Any] | None:
     boards = {name: find_board(name, OpenBoard) for name in board_names(OpenBoard)}
     titles = {name: board.title.partition(",")[0] for name, board in boards.items()}
     routed = []
-    for figures in (one.figures for one in kept_outcomes(path.with_name("bitstreams.json"))):
+    for one in kept_outcomes(path.with_name("bitstreams.json")):
+        figures = one.figures
         # A module that was routed alone has no board.
         if "board" in figures and (design := _ROUTED.fullmatch(figures["configuration"])):
             screen = LIST_SCREENS[design["screen"], figures["rows"]].scaled(int(design["scale"]))
@@ -214,6 +224,7 @@ def _cost(path: Path = RESULTS / "features.json") -> dict[str, Any] | None:
                 "features": design["features"].split("-")[1:], "runs": int(design["list"]),
                 "columns": screen.columns, "rows": screen.rows,
                 "cells": figures["cells"][figures["kinds"]["logic"]],
+                "clock": figures["clocks"]["clk"], "date": one.date,
                 **{name: figures[name] for name in ("rectangles", "reflections")},
             })  # fmt: skip
     designs = {name: configure(engine=SPAN.facts.name, **options) for name, options in ROOM_DESIGNS.items()}

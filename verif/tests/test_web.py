@@ -221,3 +221,68 @@ def test_the_engines_side_by_side(page, request, which, screen, name, fraction_b
     assert state["seed"] == {"hash": picture_hash(rounded), "wrong": 0}
     assert state["differs"] == np.any(perfect != rounded, axis=2).sum() > 0
     assert not page.locator("#engines-seed").is_hidden()
+
+
+# The monitor ----------------------------------------------------------------------------------------------------------
+
+PARTS = {"blanking": (48, 52, 60), "hs": (47, 88, 120), "vs": (106, 74, 128), "late": (192, 48, 48)}
+"""Colours of a raster outside the picture."""
+
+
+def raster(picture: np.ndarray, screen: Screen) -> np.ndarray:
+    """Return what a monitor receives in a frame, from the beginnings of both syncs on."""
+    whole = np.empty((screen.vertical.total, screen.horizontal.total, 3), dtype=np.uint8)
+    whole[:] = PARTS["blanking"]
+    whole[: screen.vertical.sync] = PARTS["vs"]
+    whole[:, : screen.horizontal.sync] = PARTS["hs"]
+    top, left = (of.sync + of.back for of in (screen.vertical, screen.horizontal))
+    shown = picture.repeat(screen.doubling, axis=0).repeat(screen.doubling, axis=1)
+    whole[top : top + shown.shape[0], left : left + shown.shape[1]] = shown
+    return whole
+
+
+def monitor(page, scene: str, **wanted: int) -> dict:
+    """Return the state of the monitor's tab once it shows a scene, with each count at least as wanted."""
+    page.select_option("#monitor-scene", scene)
+    script = """([scene, wanted]) => {
+        const state = RayCaster.state.monitor;
+        if (state?.error) return state;
+        const reached = Object.entries(wanted).every(([name, least]) => state?.counts[name] >= least);
+        return state?.scene === scene && state.wrong !== null && reached && { ...state, raster: state.raster };
+    }"""
+    return page.wait_for_function(script, arg=[scene, wanted]).json_value()
+
+
+def test_the_monitor_receives_syncs_and_pictures(page, site):
+    """Every clock of a frame is where the timing puts it, also after another scene was loaded."""
+    page.goto((site / "index.html").as_uri() + "#monitor")
+    horizontal, vertical = TINY.horizontal, TINY.vertical
+    for name in ("mirror_room", "boxes"):
+        state = monitor(page, name)
+        picture = ExactModel().render(packaged(name), TINY)
+        assert (state["raster"], state["wrong"]) == (picture_hash(raster(picture, TINY)), 0)
+        displayed, hs = horizontal.visible * vertical.visible, horizontal.sync * vertical.total
+        vs = vertical.sync * (horizontal.total - horizontal.sync)
+        clocks = horizontal.total * vertical.total
+        counts = {"clocks": clocks, "lines": vertical.total, "longest": horizontal.total, "displayed": displayed}
+        counts |= {"hs": hs, "vs": vs, "blanking": clocks - displayed - hs - vs, "late": 0, "lateRows": 0}
+        assert state["counts"] == counts
+    assert f"{vertical.total} lines of {horizontal.total}" in page.text_content("#monitor-status")
+
+
+def test_the_monitor_shows_late_rows(page, site):
+    """A design with too few units is late in every row, and the raster shows it in these lines."""
+    options = {**PAGE_MODELS["seed-0"], "units": 1, "allow_underrun": True}
+    wasm = machine_wasm(configure(**options), taps=True, build=BUILD)
+    page.goto((site / "index.html").as_uri() + "#monitor")
+    page.evaluate("RayCaster.model('seed-0')")
+    model = packed(wasm.read_bytes())
+    page.evaluate("(wasm) => (RayCaster.models['seed-0'] = { ...RayCaster.models['seed-0'], wasm }, 0)", model)
+    page.select_option("#monitor-engine", "seed")
+    state = monitor(page, "boxes", lateRows=TINY.rows)
+    assert state["counts"]["lateRows"] == TINY.rows and state["wrong"] > 0
+    assert state["counts"]["late"] == state["counts"]["displayed"]
+    place = [TINY.horizontal.sync + 2, TINY.vertical.sync + TINY.vertical.back - 2]
+    script = "([x, y]) => [...find('monitor-raster').getContext('2d').getImageData(x, y, 1, 3).data]"
+    above, _, beside = zip(*[iter(page.evaluate(script, place))] * 4, strict=True)
+    assert (above[:3], beside[:3]) == (PARTS["blanking"], PARTS["late"])

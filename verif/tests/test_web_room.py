@@ -234,19 +234,36 @@ def test_clocks_are_the_hardware_s(room):
     [cells] = [row for row in kept if row["engine"] == "span" and row["options"] == ROOM_DESIGNS["plain"]]
     assert f"{cells['tables']:,} look-up tables" in cost
     assert "Boards with room for it and for this frame: Colorlight i9, " in cost
+
+
+def test_the_boards_that_were_routed(room):
+    """The table has the designs that can draw the room from this camera, each with its cells and its clock."""
     kept = [one.figures for one in kept_outcomes(RESULTS / "bitstreams.json")]
-    routed = {one["reflections"]: one["cells"]["ICESTORM_LC"] for one in kept if one.get("board") == "icebreaker"}
-    cost = "cellsText('plain', RayCaster.state.room, { columns: 320, rows: 240 }, RayCaster.room.scene)"
-    said = "iCEBreaker with its 12-bit DVI Pmod draws it too, with {:,} of {:,} logic cells"
-    text = room.evaluate(cost)
-    assert said.format(*routed[1]) + "." in text and said.format(*routed[0]) not in text
+    ices = {one["reflections"]: one for one in kept if one.get("board") == "icebreaker"}
+
+    def line(one: dict) -> str:
+        used, there = one["cells"][one["kinds"]["logic"]]
+        reached, needed = one["clocks"]["clk"]
+        return f"{used:,} of {there:,}{reached:.1f}, needs {needed:.1f}"
+
+    choose(room, "boxes")
+    checked(room)
+    text = room.text_content("#room-routed")
+    assert "iCEBreaker with its 12-bit DVI Pmod320 x 24016,384" + line(ices[1]) in text and line(ices[0]) not in text
     choose(room, "matte")
     checked(room)
-    assert said.format(*routed[0]) + " and a serial port." in room.evaluate(cost)
+    assert "Pmod, serial port320 x 24016,384" + line(ices[0]) in room.text_content("#room-routed")
     room.focus("#room-picture")
     room.keyboard.down("ArrowLeft")
-    room.wait_for_function(f"!{cost}.includes('iCEBreaker')")
+    room.wait_for_function("!find('room-routed').textContent.includes('iCEBreaker')")
     room.keyboard.up("ArrowLeft")
+    turned = [line(one) for one in kept if "board" in one and "-turn-materials" in one["configuration"]]
+    text = room.text_content("#room-routed")
+    assert turned and all(one in text for one in turned)
+    # A list that is too short for the frame.
+    rows = "routedTable({ ...RayCaster.state.room, runs: %d }, RayCaster.room.scene).textContent"
+    most = max(int(one["configuration"].partition("-l")[2].split("-")[0]) for one in kept if "board" in one)
+    assert "needs" in room.evaluate(rows % most) and "needs" not in room.evaluate(rows % (most + 1))
 
 
 def test_a_planted_pixel_is_counted(room):

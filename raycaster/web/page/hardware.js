@@ -88,6 +88,12 @@ class Machine extends Remote {
     return this.ofRays(await this.call("watch", column, row));
   }
 
+  // Run on for some clocks of the monitor; with the last ones of a frame comes its picture; only for designs with taps.
+  async scan(count) {
+    const part = await this.call("scan", count);
+    return part.ended ? this.ofRays(part) : part;
+  }
+
   ofRays(frame) {
     const { columns, rows, doubling } = this.design;
     const width = columns * doubling;

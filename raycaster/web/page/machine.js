@@ -118,6 +118,17 @@ const calls = {
     return { ...frame, samples: new Uint32Array(samples.buffer) };
   },
 
+  // Run on until `count` clocks of the monitor were received since the last call, or to the vertical sync, with which
+  // the frame is complete.
+  scan(count) {
+    const ended = exported.scan(count) === 1;
+    const received = new Uint32Array(bytes(exported.received(), 4 * exported.received_count()).slice().buffer);
+    if (!ended) return { received, ended };
+    const pixels = bytes(exported.pixels(), 4 * exported.pixel_count()).slice();
+    const words = bytes(exported.live_words(), 4096).slice();
+    return { received, ended, pixels, words };
+  },
+
   // Compare a picture with the scene in these register words: number of wrong pixels, and a byte per pixel, 1 if wrong.
   judge(words, pixels, of) {
     bytes(exported.golden_words(), words.length).set(words);

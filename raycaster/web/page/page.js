@@ -43,6 +43,16 @@ function refusal(scene) {
   return reason ? `The seed engine refuses this scene: ${reason.replace("the seed engine", "it")}.` : "";
 }
 
+const TAPPED = { exact: "exact", seed: "seed-0" }; // models with taps, by engine
+
+// Say in a tab why the seed engine refuses a scene, and choose another engine.
+function refuseSeed(id, engines, scene) {
+  const refused = refusal(scene);
+  [...engines.options].find(({ value }) => value === "seed").disabled = refused !== "";
+  if (refused) engines.value = "exact";
+  find(`${id}-refusal`).textContent = refused;
+}
+
 // Return the fastest model that draws a scene, if possible with this number of columns; undefined if there is none.
 function modelOf(scene, columns) {
   const able = RayCaster.walk.models.filter(

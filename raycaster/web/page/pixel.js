@@ -2,7 +2,6 @@
 // The tab with a pixel's life: the steps of its ray unit, from the unit's own signals.
 "use strict";
 
-const PIXEL_ENGINES = { exact: "exact", seed: "seed-0" }; // models by engine
 const MARK_REACH = 4; // distance of the mark from its pixel, in pixels
 const FAR = 2000; // drawn length of a ray that misses, in world units
 const DASH = "\u2013";
@@ -260,7 +259,7 @@ tabs.pixel = {
     const inputs = { column: find("pixel-column"), row: find("pixel-row") };
     const canvas = find("pixel-picture"), status = find("pixel-status");
     fillScenes(selects.scene);
-    fill(selects.engine, Object.keys(PIXEL_ENGINES), "exact");
+    fill(selects.engine, Object.keys(TAPPED), "exact");
     const judge = await Judge.start();
     let machine = null, loaded = null, chosen = false;
 
@@ -297,11 +296,8 @@ tabs.pixel = {
       RayCaster.state.pixel = { done: false };
       status.className = "";
       status.textContent = "simulating a frame, clock by clock";
-      const refused = refusal(readScene(text, name));
-      [...selects.engine.options].find(({ value }) => value === "seed").disabled = refused !== "";
-      if (refused) selects.engine.value = "exact";
-      find("pixel-refusal").textContent = refused;
-      await start(PIXEL_ENGINES[selects.engine.value]);
+      refuseSeed("pixel", selects.engine, readScene(text, name));
+      await start(TAPPED[selects.engine.value]);
       const { design } = machine;
       if (!inputs.column.validity.valid || !inputs.row.validity.valid) {
         throw new Error(`Choose a column from 0 to ${design.columns - 1} and a row from 0 to ${design.rows - 1}.`);

@@ -94,34 +94,46 @@ class Properties {
 }
 
 // Say what hardware for rooms like this one takes, and which boards have it.
-function cellsText(model, { runs, camera }, { columns, rows }, { needs, reflections, rect }) {
-  const { rooms, boards, routed, date } = RayCaster.cost ?? {};
+function cellsText(model, { runs }) {
+  const { rooms, boards, date } = RayCaster.cost ?? {};
   const { design: name } = RayCaster.walk.models.find(({ name }) => name === model), cells = rooms?.[name];
   if (!cells) return "";
   const titles = boards.filter(
     ({ elements, multipliers, runs: most }) =>
       cells.tables <= FULLEST * elements && cells.multipliers <= multipliers && runs <= most[name],
   ).map(({ title }) => title);
-  const turn = JSON.stringify(camera.basis) !== JSON.stringify(RayCasterScene.basis(0, 0, 0));
-  const able = routed.filter((one) => !titles.includes(one.title) && columns === one.columns && rows === one.rows &&
-    runs <= one.runs && rect.length <= one.rectangles && reflections <= one.reflections &&
-    Object.entries({ ...needs, turn }).every(([look, isNeeded]) => !isNeeded || one.features.includes(look)));
-  const others = able.map(({ title, serial, cells: [used, all] }) =>
-    ` A design that was placed and routed for the ${title} draws it too, with ${used.toLocaleString("en")} of ` +
-    `${counted(all, "logic cell")}${serial ? " and a serial port" : ""}.`);
-  return ` The ${name} design for 640 x 480 monitors takes ${counted(cells.tables, "look-up table")}, ` +
+  return ` The ${name} design with 640 x 480 rays takes ${counted(cells.tables, "look-up table")}, ` +
     `${counted(cells.registers, "register")} and ${counted(cells.multipliers, "multiplier")} of an ECP5 (counted before ` +
-    `placing, ${date}). Boards with room for it and for this frame: ${titles.join(", ") || "none of those described here"}.` +
-    others.join("");
+    `placing, ${date}). Boards with room for it and for this frame: ${titles.join(", ") || "none of those described here"}.`;
+}
+
+// List the designs for boards that were placed and routed and have all that a room needs. A design with another number
+// of rays needs other lists for it.
+function routedTable({ runs, camera }, { needs, reflections, rect }) {
+  const turn = JSON.stringify(camera.basis) !== JSON.stringify(RayCasterScene.basis(0, 0, 0));
+  const able = (RayCaster.cost?.routed ?? []).filter((one) => runs <= one.runs && rect.length <= one.rectangles &&
+    reflections <= one.reflections &&
+    Object.entries({ ...needs, turn }).every(([look, isNeeded]) => !isNeeded || one.features.includes(look)));
+  if (!able.length) return element("div");
+  const oldest = able.map(({ date }) => date).sort()[0];
+  const rows = able.map(({ title, serial, columns, rows, runs: most, cells: [used, all], clock: [reached, needed] }) => ({
+    cells: [
+      title + (serial ? ", serial port" : ""), `${columns} x ${rows}`, most.toLocaleString("en"),
+      `${used.toLocaleString("en")} of ${all.toLocaleString("en")}`, `${reached.toFixed(1)}, needs ${needed.toFixed(1)}`,
+    ],
+  }));
+  return table(`Placed and routed for boards, on ${oldest} or later, with all that this room needs`,
+    ["board", "rays", "longest list of runs", "logic cells", "clock in MHz"], rows);
 }
 
 // Say how fast hardware with one unit draws this frame, which takes it as many clocks as here, and how to make it.
 function showCost(frame, model, design, scene) {
-  const { columns, rows, scale } = design, { needs, reflections, rect } = scene;
+  const { columns, rows, scale } = design, { needs, reflections, rect } = scene, routed = routedTable(frame, scene);
   const rates = CLOCKS.map((clock) => `${((clock * 1e6) / frame.clocks).toFixed(0)} at ${clock} MHz`).join(", ");
   find("room-cost").textContent = `Hardware with one unit of the span engine draws this frame of ${columns} x ${rows} in ` +
-    `${counted(frame.clocks, "clock")}. Frames per second: ${rates}.${cellsText(model, frame, design, scene)} Its Verilog:`;
+    `${counted(frame.clocks, "clock")}. Frames per second: ${rates}.${cellsText(model, frame)} Its Verilog:`;
   const looks = ["materials", "patterns", "light"].filter((look) => needs[look]).map((look) => ` ${look.toUpperCase()}=1`);
   find("room-command").textContent =
     `make verilog ENGINE=span SCALE=${scale} TURN=1${looks.join("")} REFLECTIONS=${reflections} RECTANGLES=${rect.length}`;
+  if (routed.textContent !== find("room-routed").textContent) find("room-routed").replaceChildren(routed);
 }
