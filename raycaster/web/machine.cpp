@@ -70,6 +70,14 @@ public:
 
     explicit WatchedMachine(VerilatedContext *context) : Machine{context} { top.tapped_unit = NONE; }
 
+    // Run until the vertical sync begins, and receive from there on.
+    void run_frame() {
+        Machine::run_frame();
+        received.erase(received.begin(), received.end() - 1);
+        handed = 0;
+        ended = true;
+    }
+
     // Record the unit's next computation of its pixel in this row and group.
     void watch(uint32_t unit, uint32_t row, uint32_t group) {
         top.tapped_unit = unit;
@@ -84,7 +92,6 @@ public:
     bool scan(uint32_t count) {
         if (ended) pixels.clear();
         received.erase(received.begin(), received.begin() + handed);
-        scans = true;
         for (ended = false; !ended && received.size() < count;) ended = clock();
         handed = received.size();
         return ended;
@@ -102,7 +109,6 @@ protected:
     }
 
     void sample() override {
-        if (!scans) return;
         const uint32_t bits = VISIBLE * top.vga_blank_n | HS * top.vga_hs | VS * top.vga_vs | LATE * late;
         received.push_back(colour(0) | bits << 24);
         late = false;
@@ -115,7 +121,7 @@ private:
 
     uint32_t watched_row, watched_group;
     size_t handed = 0; // clocks of `received` that the last scan returned
-    bool records = false, scans = false, ended = true, late = false;
+    bool records = false, ended = true, late = false;
 };
 
 WatchedMachine *machine;

@@ -32,7 +32,8 @@ tabs.engines = {
       const { count } = await judge.look(drawn[side], design);
       const frame = drawn[side];
       const parts = [
-        `${side} engine`, `computed in ${counted(frame.busy, "clock")}`, ...more, counted(count, "wrong pixel"),
+        `${side} engine`, `computed in ${counted(frame.busy, "clock")}`, ...more,
+        `${counted(count, "pixel")} different from its own model`,
       ];
       statuses[side].textContent = parts.join(", ");
       return { hash: pictureHash(frame.pixels), wrong: count };

@@ -15,11 +15,8 @@ class Raster {
     Object.assign(this, { columns, lines, doubling, levels: (hs && RECEIVED.HS) | (vs && RECEIVED.VS), last: null });
     this.words = new Uint32Array(columns * lines);
     this.colours = Object.fromEntries(Object.entries(RASTER).map(([name, colour]) => [name, wordOf(colour)]));
-    // A machine starts with the clock in which both syncs begin.
-    this.column = this.line = 0;
-    this.before = RECEIVED.HS | RECEIVED.VS;
+    this.column = this.line = this.before = 0;
     this.begin();
-    this.place(0, this.before);
   }
 
   begin() {
@@ -104,7 +101,6 @@ tabs.monitor = {
       if (machine !== before) {
         raster = new Raster(design.monitor, design.doubling);
         Object.assign(canvas, { width: raster.columns, height: raster.lines });
-        raster.receive((await machine.scan(0)).received);
       }
       await machine.call("load", scene);
       shown = name;
@@ -117,7 +113,7 @@ tabs.monitor = {
         status.className = wrong ? "error" : "";
         status.textContent = `${counted(clocks, "clock")} per frame, ${lines} lines of ${longest}: ${hz.toFixed(1)} frames ` +
           `per second at ${design.monitor.hz / 1e6} MHz, ${speed.toFixed(2)} in this page` +
-          (wrong === null ? "" : `, ${counted(wrong, "wrong pixel")} of ${counted(design.columns * design.rows, "ray")}`);
+          (wrong === null ? "" : `, ${counted(wrong, "pixel")} different from the golden model`);
         find("monitor-counts").replaceChildren(rasterTable(counts));
         RayCaster.state.monitor = {
           scene, engine: design.engine, wrong, counts,

@@ -28,6 +28,7 @@ class Properties {
     rectangle("colour2", "colour2", (value) => set("colour2", value));
     rectangle("cell", "cell", (value) => set("cell", whole(value)));
     rectangle("pattern", "pattern", (value) => this.setPattern(value));
+    find("room-corners").append(...AXES.map((axis) => element("span", axis, { ariaHidden: true })));
     for (const corner of [0, 1]) {
       AXES.forEach((axis, number) => {
         const field = element("input", "", {
@@ -119,11 +120,11 @@ function routedTable({ runs, camera }, { needs, reflections, rect }) {
   const rows = able.map(({ title, serial, columns, rows, runs: most, cells: [used, all], clock: [reached, needed] }) => ({
     cells: [
       title + (serial ? ", serial port" : ""), `${columns} x ${rows}`, most.toLocaleString("en"),
-      `${used.toLocaleString("en")} of ${all.toLocaleString("en")}`, `${reached.toFixed(1)}, needs ${needed.toFixed(1)}`,
+      `${used.toLocaleString("en")} of ${all.toLocaleString("en")}`, reached.toFixed(1), needed.toFixed(1),
     ],
   }));
   return table(`Placed and routed for boards, on ${oldest} or later, with all that this room needs`,
-    ["board", "rays", "longest list of runs", "logic cells", "clock in MHz"], rows);
+    ["board", "rays", "runs", "logic cells", "MHz", "needs"], rows);
 }
 
 // Say how fast hardware with one unit draws this frame, which takes it as many clocks as here, and how to make it.
