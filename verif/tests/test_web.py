@@ -243,6 +243,7 @@ def raster(picture: np.ndarray, screen: Screen) -> np.ndarray:
 
 def monitor(page, scene: str, **wanted: int) -> dict:
     """Return the state of the monitor's tab once it shows a scene, with each count at least as wanted."""
+    page.evaluate("delete RayCaster.state.monitor")
     page.select_option("#monitor-scene", scene)
     script = """([scene, wanted]) => {
         const state = RayCaster.state.monitor;
@@ -254,8 +255,9 @@ def monitor(page, scene: str, **wanted: int) -> dict:
 
 
 def test_the_monitor_receives_syncs_and_pictures(page, site):
-    """Every clock of a frame is where the timing puts it, also after another scene was loaded."""
+    """Every clock of a frame is where the timing puts it, also after a scene that is refused and after another one."""
     page.goto((site / "index.html").as_uri() + "#monitor")
+    assert "at most 12" in monitor(page, "hall_of_mirrors")["error"]
     horizontal, vertical = TINY.horizontal, TINY.vertical
     for name in ("mirror_room", "boxes"):
         state = monitor(page, name)

@@ -262,7 +262,7 @@ def test_the_boards_that_were_routed(room):
     text = room.text_content("#room-routed")
     assert turned and all(one in text for one in turned)
     # A list that is too short for the frame.
-    rows = "routedTable({ ...RayCaster.state.room, runs: %d }, RayCaster.room.scene).querySelectorAll('tbody tr').length"
+    rows = "routedTable({ ...RayCaster.state.room, runs: %d }, RayCaster.room.scene).querySelectorAll('td').length"
     lists = [re.search(r"-l(\d+)-", one["configuration"]) for one in kept if "board" in one]
     most = max(int(found[1]) for found in lists if found)
     assert room.evaluate(rows % most) and not room.evaluate(rows % (most + 1))

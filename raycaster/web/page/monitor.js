@@ -2,12 +2,15 @@
 // The tab of the monitor: all that it receives in a frame, painted as it comes.
 "use strict";
 
-const SLICE_LINES = 8, BEAM_LINES = 2;                       // lines per message of the machine, and of the mark below them
-const RECEIVED = { VISIBLE: 1, HS: 2, VS: 4, LATE: 8 };      // bits of a clock, as in machine.cpp
+const SLICE_LINES = 8, BEAM_LINES = 2; // lines per message of the machine, and of the mark below them
+const RECEIVED = { VISIBLE: 1, HS: 2, VS: 4, LATE: 8 }; // bits of a clock, as in machine.cpp
 const RASTER = { blanking: "#30343c", hs: "#2f5878", vs: "#6a4a80", late: "#c03030", beam: "#ffd34d" };
 
 // A picture's word of a colour: red, green, blue and 255.
-const wordOf = (colour) => new Uint32Array(new Uint8Array([...colour.slice(1).match(/../g).map((two) => parseInt(two, 16)), 255]).buffer)[0];
+function wordOf(colour) {
+  const channels = colour.match(/[0-9a-f]{2}/g).map((digits) => Number.parseInt(digits, 16));
+  return new Uint32Array(new Uint8Array([...channels, 255]).buffer)[0];
+}
 
 // Places what a monitor receives, from the beginnings of the syncs only.
 class Raster {
@@ -51,7 +54,8 @@ class Raster {
       this.lateTo = line + this.doubling;
     }
     const isLate = line <= this.lateTo;
-    const part = bits & RECEIVED.VISIBLE ? "displayed" : bits & RECEIVED.HS ? "hs" : bits & RECEIVED.VS ? "vs" : "blanking";
+    const blanked = bits & RECEIVED.HS ? "hs" : bits & RECEIVED.VS ? "vs" : "blanking";
+    const part = bits & RECEIVED.VISIBLE ? "displayed" : blanked;
     counts[part]++;
     if (isLate && part === "displayed") counts.late++;
     const colour = part === "displayed" ? word | 0xff000000 : colours[isLate && part === "blanking" ? "late" : part];
@@ -94,29 +98,32 @@ tabs.monitor = {
     // Load the scene, which the hardware takes before the first row of the frame.
     const load = async () => {
       const name = selects.scene.value, text = sceneText(name);
+      shown = "";
       refuseSeed("monitor", selects.engine, readScene(text, name));
       const before = machine;
       machine = await Machine.instead(machine, TAPPED[selects.engine.value]);
-      const { design } = machine, scene = readScene(text, name, design.rectangles);
+      const { design } = machine;
       if (machine !== before) {
         raster = new Raster(design.monitor, design.doubling);
         Object.assign(canvas, { width: raster.columns, height: raster.lines });
       }
-      await machine.call("load", scene);
+      await machine.call("load", readScene(text, name, design.rectangles));
       shown = name;
     };
 
     const say = ({ pixels, words }, speed) => {
       const { design } = machine, { last: counts } = raster, { clocks, longest, lines } = counts, scene = shown;
       judge.look({ pixels, words }, design).then((verdict) => {
-        const hz = design.monitor.hz / clocks, wrong = verdict?.count ?? null;
+        if (shown !== scene) return;
+        const { hz } = design.monitor, wrong = verdict?.count ?? null;
         status.className = wrong ? "error" : "";
-        status.textContent = `${counted(clocks, "clock")} per frame, ${lines} lines of ${longest}: ${hz.toFixed(1)} frames ` +
-          `per second at ${design.monitor.hz / 1e6} MHz, ${speed.toFixed(2)} in this page` +
+        status.textContent = `${counted(clocks, "clock")} per frame, ${lines} lines of ${longest}: ` +
+          `${(hz / clocks).toFixed(1)} frames per second at ${hz / 1e6} MHz` +
+          (speed ? `, ${speed.toFixed(2)} in this page` : "") +
           (wrong === null ? "" : `, ${counted(wrong, "pixel")} different from the golden model`);
         find("monitor-counts").replaceChildren(rasterTable(counts));
         RayCaster.state.monitor = {
-          scene, engine: design.engine, wrong, counts,
+          scene, wrong, counts,
           get raster() {
             return pictureHash(new Uint8Array(raster.words.buffer));
           },
@@ -141,7 +148,8 @@ tabs.monitor = {
           raster.receive(part.received);
           isEnd = part.ended;
           raster.draw(canvas.getContext("2d"), first, isEnd);
-          if (isEnd) say(part, 1000 / (performance.now() - began));
+          // A frame that was interrupted has no speed.
+          if (isEnd) say(part, began && 1000 / (performance.now() - began));
         }
       } finally {
         running = false;
