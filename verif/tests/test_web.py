@@ -257,7 +257,7 @@ def monitor(page, scene: str, **wanted: int) -> dict:
 def test_the_monitor_receives_syncs_and_pictures(page, site):
     """Every clock of a frame is where the timing puts it, also after a scene that is refused and after another one."""
     page.goto((site / "index.html").as_uri() + "#monitor")
-    assert "at most 12" in monitor(page, "hall_of_mirrors")["error"]
+    assert "holds 12" in monitor(page, "hall_of_mirrors")["error"]
     horizontal, vertical = TINY.horizontal, TINY.vertical
     for name in ("mirror_room", "boxes"):
         state = monitor(page, name)
