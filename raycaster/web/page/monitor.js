@@ -82,7 +82,7 @@ function rasterTable({ clocks, displayed, hs, vs, blanking, late, lateRows }) {
   return table("", ["", "part of a frame", "clocks", "share"], [
     row("", "displayed", displayed), row(RASTER.blanking, "blanking", blanking),
     row(RASTER.hs, "horizontal sync", hs), row(RASTER.vs, "vertical sync", vs),
-    row(RASTER.late, `displayed from ${counted(lateRows, "late row")}`, late),
+    row(RASTER.late, `in ${counted(lateRows, "late row")}`, late),
   ]);
 }
 
