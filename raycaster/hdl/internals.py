@@ -75,7 +75,8 @@ class DerivedClock(SignalType):
 class _Written(Process):
     """A process of one assignment that is written as a call with a lambda.
 
-    The lambda has the value. The argument before it is driven, if the argument after it is high or there is none.
+    The lambda has the value. The argument before it is driven, if the argument after it is high or there is none. Both
+    may be tuples.
     """
 
     def _made(self, value: FunctionType, block: Any) -> FunctionType:
@@ -118,14 +119,17 @@ def _written(file: str, value: CodeType) -> tuple[Any, CodeType]:  # equal code 
     [(name, call)] = calls
     place = next(index for index, one in enumerate(call.args) if isinstance(one, ast.Lambda))
     target, function, *conditions = call.args[place - 1 :]
-    driven: Any = ast.Attribute(target, "next", ast.Store())
-    statement: Any = ast.Assign([driven], function.body)
+    targets, values = ([*getattr(one, "elts", [one])] for one in (target, function.body))
+    if len({*map(ast.unparse, targets)}) != len(values):
+        raise SyntaxError("expected different signals, and a value for each", (file, value.co_firstlineno, 0, ""))
+    pairs: Any = zip(targets, values, strict=True)
+    body: Any = [ast.Assign([ast.Attribute(one, "next", ast.Store())], new) for one, new in pairs]
     if conditions:
-        statement = ast.If(conditions[0], [statement], [])
+        body = [ast.If(conditions[0], body, [])]
     around = [node.id for one in (target, *conditions) for node in ast.walk(one) if isinstance(node, ast.Name)]
     arguments = [ast.arg(name) for name in sorted({*value.co_freevars, *around})]
     none: Any = ast.arguments([], [], None, [], [], None, [])
-    process = ast.FunctionDef(name or around[0], none, [statement], [])
+    process = ast.FunctionDef(name or around[0], none, body, [])
     block = ast.FunctionDef("block", ast.arguments([], arguments, None, [], [], None, []), [process], [])
     tree: Any = ast.Module([process], [])
     for node in (process, block):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import ast
 import inspect
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from types import FunctionType
 from typing import Any
@@ -18,9 +18,12 @@ PYTHON = {one.__name__: one for one in (len, range, isinstance, int, bool, abs, 
 EXPRESSIONS = (ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.IfExp, ast.Compare, ast.Subscript, ast.Tuple, ast.List)
 """Expressions that are constant if their parts are."""
 
+SEVERAL = "assign to one signal or variable at a time, or to different whole signals: a.next, b.next = c, d"
+"""Remedy for an assignment."""
+
 
 def prepare(tree: Any) -> None:
-    """Leave out the branches that constants decide, split comparisons of several values, and refuse the rest.
+    """Leave out the branches that constants decide, split what has several values or targets, and refuse the rest.
 
     Args:
         tree: the process or function; `symdict` has the values of the names around it.
@@ -106,6 +109,16 @@ class _Decided(ast.NodeTransformer):
         [value] = self._value(node) or [None]
         return ast.copy_location(ast.Constant(value), node) if isinstance(value, int) else node
 
+    def visit_Assign(self, node: ast.Assign) -> Any:
+        """Split an assignment to several signals, such as `a.next, b.next = c, d` and `a.next = b.next = c`."""
+        self.generic_visit(node)
+        pairs = [pair for target in node.targets for pair in _pairs(target, node.value)]
+        # After an indexed target, MyHDL would take the next ones for inputs.
+        signals = {ast.unparse(target) for target, _ in pairs if _is_whole(target)}
+        if len(pairs) == 1 or len(signals) < len(pairs):
+            return node
+        return [ast.copy_location(ast.Assign([target], value), node) for target, value in pairs]
+
     def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
         [place], words = self._value(node.slice) or [None], self._around.get(getattr(node.value, "id", ""))
         if isinstance(words, list) and isinstance(place, int) and place < 0:
@@ -176,6 +189,19 @@ class _Decided(ast.NodeTransformer):
         return self._is_constant(node) or (isinstance(node, ast.Name) and node.id in {*self._around, *PYTHON})
 
 
+def _pairs(target: ast.expr, value: ast.expr) -> Iterator[tuple[ast.expr, ast.expr]]:
+    """Yield what is assigned, each with its value; a tuple as a whole if its values are not written out."""
+    if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple) and len(target.elts) == len(value.elts):
+        yield from zip(target.elts, value.elts, strict=True)
+    else:
+        yield target, value
+
+
+def _is_whole(target: ast.expr) -> bool:
+    """Return True for the next value of all of a signal."""
+    return isinstance(target, ast.Attribute) and isinstance(target.value, ast.Name)
+
+
 def _is_plain(value: Any) -> bool:
     """Return True for a value that no simulation changes."""
     if isinstance(value, (tuple, list, set, frozenset, dict)):
@@ -186,12 +212,14 @@ def _is_plain(value: Any) -> bool:
 def _check(tree: Any) -> None:
     for node in ast.walk(tree):
         match node:
-            case ast.Assign(targets=[at, *_]) | ast.AugAssign(target=at):
+            case ast.Assign(targets=[at]) | ast.AugAssign(target=at):
                 while isinstance(at, (ast.Attribute, ast.Subscript)):
                     at = at.value
                 if isinstance(at, ast.Name):
                     continue
-                text = f"Verilog has no assignment to {ast.unparse(at)}; assign to one signal or variable at a time"
+                text = f"Verilog has no assignment to {ast.unparse(at)}; {SEVERAL}"
+            case ast.Assign():
+                text = f"Verilog has no {ast.unparse(node)}; {SEVERAL}"
             case ast.ListComp():
                 made = ast.unparse(node)
                 text = f"a process has no list of its own in Verilog; make {made} a list of signals outside of it"

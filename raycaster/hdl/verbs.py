@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Processes of one assignment as calls, each an `assign` in Verilog: `see_carry = assign(carry, lambda: a and b)`.
 
-The others are operators, and make the signal for their result: `total, add = plus(a, b, 9)`. The operands are signals
-or integers. A block gives the signal a variable of its own, which is its name in Verilog; so names here begin with an
-underscore.
+A call may drive several signals: `keep = register(clk, (start, stop), lambda: (low, high), found)`. The others are
+operators, and make the signal for their result: `total, add = plus(a, b, 9)`. The operands are signals or integers. A
+block gives the signal a variable of its own, which is its name in Verilog; so names here begin with an underscore.
 """
 
 from collections.abc import Callable
@@ -15,14 +15,17 @@ from myhdl import Signal
 from raycaster.hdl.internals import Assignment, Process, Register, SignalType, adopted, calling_block
 from raycaster.hdl.signals import bit, initial
 
+Driven = SignalType | tuple[SignalType, ...]
+"""A signal, or several, of which each has its value in the lambda's tuple."""
 
-def assign(target: SignalType, value: Callable[[], Any]) -> Assignment:
+
+def assign(target: Driven, value: Callable[[], Any]) -> Assignment:
     """Return a process that drives a signal with the value of a lambda: `assign(carry, lambda: a and b)`."""
     assert isinstance(value, FunctionType)
     return Assignment(value, calling_block())
 
 
-def register(clk: SignalType, target: SignalType, value: Callable[[], Any], when: SignalType | bool = True) -> Register:
+def register(clk: SignalType, target: Driven, value: Callable[[], Any], when: SignalType | bool = True) -> Register:
     """Return a process that a clock drives: `register(clk, memory[place], lambda: word, write)`.
 
     It takes the value at the clock's rising edges at which the last argument is high, and always if there is none.

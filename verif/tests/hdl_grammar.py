@@ -390,7 +390,11 @@ class Block(Expressions):
 
         form = self.one_of("plain", "plain", "if", "if", "default", self.variable, self.integer, self.task)
         if depth == 0 or form == "plain":
-            return [self.assigned(name, ranges) for name in names if not (holds and self.once_in(5))] or ["pass"]
+            lines = [self.assigned(name, ranges) for name in names if not (holds and self.once_in(5))]
+            if len(lines) > 1 and self.once_in(3):
+                sides = zip(*(line.split(" = ", 1) for line in lines), strict=True)
+                return [" = ".join(map(", ".join, sides))]
+            return lines or ["pass"]
         if form == "default":
             lines = [self.assigned(name, ranges, 1) for name in names]
             return [*lines, f"if {self.condition()}:", *inner(True)]

@@ -148,37 +148,49 @@ def test_verbs(tmp_path, random):
 
 
 @block
-def with_registers(clk, place, word, write, shown, count):
-    """Write a memory on request, and read it and count in each cycle."""
+def with_registers(clk, place, word, write, shown, count, late, former, less):
+    """Write a memory on request, and read it and count in each cycle; keep the last two words that were written."""
     memory = [unsigned(4) for _ in range(4)]
-    total = unsigned(4)
+    total, one, other = unsigned(4), unsigned(4), unsigned(4)
     # Before the memory.
     keep = register(clk, memory[place], lambda: word, write)
     fetch = register(clk, shown, lambda: memory[place])
     counting = register(clk, total, lambda: (total + 1) % 16, write)
-    show = assign(count, lambda: total)
-    return keep, fetch, counting, show
+    # Two at a time.
+    pair = register(
+        clk,
+        (one, other),
+        lambda: (word, one),
+        write,
+    )
+    show = assign((count, late, former, less), lambda: (total, one, other, one < other))
+    return keep, fetch, counting, pair, show
 
 
 def test_registers(tmp_path, random):
-    widths = {"place": 2, "word": 4, "shown": 4, "count": 4}
+    widths = {"place": 2, "word": 4, "shown": 4, "count": 4, "late": 4, "former": 4}
     leaf = Leaf(
         with_registers,
-        lambda: {"clk": bit(), "write": bit()} | {name: unsigned(bits) for name, bits in widths.items()},
+        lambda: (
+            {name: bit() for name in ("clk", "write", "less")} | {one: unsigned(bits) for one, bits in widths.items()}
+        ),
         tmp_path,
     )
     stimulus = random_inputs(leaf, random, 50)
-    memory, shown, count = [0] * 4, 0, 0
+    memory, shown, count, late, former = [0] * 4, 0, 0, 0, 0
     for inputs, outputs in zip(stimulus, leaf.run_both(stimulus), strict=True):
-        assert outputs == {"shown": shown, "count": count}
+        kept = {"late": late, "former": former, "less": late < former}
+        assert outputs == {"shown": shown, "count": count} | kept
         shown = memory[inputs["place"]]
         if inputs["write"]:
             memory[inputs["place"]], count = inputs["word"], (count + 1) % 16
+            late, former = inputs["word"], late
     text = (tmp_path / "with_registers.v").read_text()
     assert (
         "// Before the memory.\nalways @(posedge clk) begin\n    if (write) begin\n        memory[place] <= word;"
         in text
     )
+    assert "// Two at a time.\nalways @(posedge clk) begin\n    if (write) begin\n        one <= word;\n" in text
 
 
 def test_a_line_has_one_lambda():
@@ -186,3 +198,16 @@ def test_a_line_has_one_lambda():
     target, other, source = bit(), bit(), bit()
     with pytest.raises(SyntaxError, match="one lambda in a line"):
         assign(target, lambda: source), assign(other, lambda: not source)
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        lambda clk, one, other: assign((one, other), lambda: clk),
+        lambda clk, one, other: assign(one, lambda: (clk, other)),
+        lambda clk, one, other: register(clk, (one, one), lambda: (clk, other)),
+    ],
+)
+def test_each_signal_of_a_call_has_a_value(made):
+    with pytest.raises(SyntaxError, match="expected different signals, and a value for each"):
+        made(bit(), bit(), bit())

@@ -484,6 +484,33 @@ def a_loop_in_a_branch(a, s, y, z):
     return instances()
 
 
+@program(clk=1, reset=reset_signal, a=4, b=4, turn=1, low=4, high=4, total=5, apart=-5, first=4, second=4, count=5)
+def signals_are_assigned_together(clk, reset, a, b, turn, low, high, total, apart, first, second, count):
+    def halved(word, places=1):
+        return word >> places
+
+    @always_comb
+    def combine():
+        total.next, apart.next = a + b, a - b
+
+    @always_comb
+    def order():
+        low.next = high.next = halved(a) if turn else a
+        if a > b:
+            low.next, high.next = b, a
+        elif a < b:
+            high.next = b
+
+    @always_seq(clk.posedge, reset=reset)
+    def keep():
+        if turn:
+            first.next, second.next = second ^ 1, first
+        else:
+            first.next = second.next = count.next = a
+
+    return instances()
+
+
 @program(clk=1, reset=reset_signal, a=4, y=4, z=4, kept=4)
 def branches_that_constants_decide(clk, reset, a, y, z, kept):
     mode, wide, extra, unused = "plain", False, None, Signal(intbv(5)[4:])

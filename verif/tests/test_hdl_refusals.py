@@ -22,6 +22,7 @@ def test_a_wrong_form_is_refused(row, tmp_path):
 DECLARED = {
     "memory": "memory = [Signal(intbv(0)[4:]) for _ in range(4)]\n@always(clk.posedge)\ndef fill():\n"
     "    memory[index].next = a\n",
+    "twin": "twin = unsigned(4)\nreader = add(twin, b, unconnected(4), unconnected(1))\n",
     "offset": "offset = Constant(intbv(-3, min=-8, max=8))\n",
     "step": "step = signed(4)\n@always(clk.posedge)\ndef turn():\n    step.next = a[3:]\n",
 }
@@ -104,6 +105,20 @@ def process(statements: str) -> str:
                 ("n = a.val\nresult.next = n", "n would be a.val itself in Python; write n[:] = a.val"),
                 ("result == a\nresult.next = a", "result == a changes nothing; assign it to something, or remove it"),
                 ("concat(result, result).next = a", "Verilog has no assignment to concat(result, result)"),
+                *(
+                    (line, f"Verilog has no {said}; assign to one signal or variable at a time, or to different whole ")
+                    for line, said in (
+                        ("result.next, twin.next = a", "assignment to (result.next, twin.next)"),
+                        ("result.next, twin.next = a, b, a", "assignment to (result.next, twin.next)"),
+                        ("result.next, result.next = a, b", "assignment to (result.next, result.next)"),
+                        ("result.next = twin.next = result.next = a", "result.next = twin.next = result.next = a"),
+                        ("result.next[2:], twin.next = index, b", "assignment to (result.next[2:], twin.next)"),
+                        ("n, m = a, b\nresult.next = n & m", "assignment to (n, m)"),
+                        ("n = m = 1\nresult.next = a & n & m", "n = m = 1"),
+                    )
+                ),
+                ("result.next, twin.next = a, a + b > index", "the result has 5 bits, and loses some"),
+                ("twin.next = result.next = memory[a - b]", "the index may be below 0"),
                 ("result.next = a[1:3]", "these bounds enclose no bits"),
                 ("result.next = a[-1:]", "these bounds enclose no bits"),
                 ("result.next = a[4:-1]", "the lowest bit may be below 0"),
