@@ -116,8 +116,7 @@ def ray_caster_renderer(
     @always_seq(clk.posedge, reset=reset)
     def measure():
         if scan.start_screen or scan.start_row:
-            progress.row_cycles.next = 1
-            progress.group_cycles.next = 1
+            progress.row_cycles.next = progress.group_cycles.next = 1
         elif enable:
             if progress.row_cycles != cycles_limit:
                 progress.row_cycles.next = progress.row_cycles + 1
@@ -130,8 +129,7 @@ def ray_caster_renderer(
     @always_seq(clk.posedge, reset=reset)
     def follow_columns():
         if not scan.visible_line:
-            read_offset.next = 0
-            read_unit.next = 0
+            read_offset.next = read_unit.next = 0
         elif scan.next_column:
             if read_unit != last_unit:
                 read_unit.next = read_unit + 1

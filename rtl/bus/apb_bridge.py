@@ -52,8 +52,7 @@ def apb_bridge(clk, reset, s_apb, avm_m0):
         avm_m0.write.next = s_apb.psel and s_apb.penable and s_apb.pwrite
         avm_m0.read.next = s_apb.psel and not s_apb.pwrite and not reading
         avm_m0.address.next = s_apb.paddr[:2]
-        avm_m0.writedata.next = s_apb.pwdata
-        avm_m0.byteenable.next = s_apb.pstrb
+        avm_m0.writedata.next, avm_m0.byteenable.next = s_apb.pwdata, s_apb.pstrb
 
     # reading: a read was accepted and is not answered yet.
     @always_seq(clk.posedge, reset=reset)

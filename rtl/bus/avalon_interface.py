@@ -220,8 +220,7 @@ def avalon_interface(
         @always_seq(clk.posedge, reset=reset)
         def keep_cycles():
             if bus.write and bus.address == cycles_address and bus.mask != 0:
-                slowest_row.next = 0
-                slowest_group.next = 0
+                slowest_row.next = slowest_group.next = 0
             elif progress.busy:
                 if progress.row_cycles > slowest_row:
                     slowest_row.next = progress.row_cycles

@@ -47,15 +47,12 @@ def bus_decoder(bus, memory, tracer, uart, buttons_word, tracer_address_bits: in
         bus.ready.next = bus.valid
         bus.word.next = 0
         if at_memory:
-            bus.ready.next = memory.ready
-            bus.word.next = memory.word
+            bus.ready.next, bus.word.next = memory.ready, memory.word
         elif at_tracer:
-            bus.ready.next = tracer.ready
-            bus.word.next = tracer.word
+            bus.ready.next, bus.word.next = tracer.ready, tracer.word
         elif at_buttons:
             bus.word.next = buttons_word
         elif at_uart:
-            bus.ready.next = uart.ready
-            bus.word.next = uart.word
+            bus.ready.next, bus.word.next = uart.ready, uart.word
 
     return instances()

@@ -42,9 +42,7 @@ def frame_reader(clk, reset, received, data, good, words, place, shown, places: 
 
     @always_comb
     def sort():
-        is_flag.next = False
-        is_escape.next = False
-        is_data.next = False
+        is_flag.next = is_escape.next = is_data.next = False
         if data == FLAG:
             is_flag.next = received
         elif data == ESCAPE:
@@ -76,8 +74,7 @@ def frame_reader(clk, reset, received, data, good, words, place, shown, places: 
             if sound:
                 words.next = at - 1
             count.next = 0
-            escaped.next = False
-            bad.next = False
+            escaped.next = bad.next = False
         elif is_escape:
             escaped.next = True
         elif is_data:

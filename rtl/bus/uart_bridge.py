@@ -105,9 +105,7 @@ def uart_bridge(clk, reset, uart, avm_m0, clock_hz: int, baud: int, places: int)
     def request():
         avm_m0.write.next = writing
         avm_m0.read.next = state == BridgeState.READ
-        avm_m0.address.next = address
-        avm_m0.writedata.next = shown
-        avm_m0.byteenable.next = every_lane
+        avm_m0.address.next, avm_m0.writedata.next, avm_m0.byteenable.next = address, shown, every_lane
 
     count_on = assign(next_address, lambda: address + 1 if address != last_address else 0)
     choose_answer = assign(answer, lambda: head if at_head else avm_m0.readdata)
@@ -122,8 +120,7 @@ def uart_bridge(clk, reset, uart, avm_m0, clock_hz: int, baud: int, places: int)
         if take:
             state.next = BridgeState.FETCH
             stop.next = words
-            place.next = 0
-            left.next = 0
+            place.next = left.next = 0
             headless.next = True
         elif state == BridgeState.FETCH:
             state.next = BridgeState.STEP

@@ -4,6 +4,7 @@
 from myhdl import Signal, always_comb, always_seq, block, instances
 
 from raycaster.hdl.signals import bit, bits_for, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.bus.bit_timer import bit_timer
 
 DATA_BITS = 8
@@ -49,9 +50,6 @@ def uart_transmitter(clk, reset, valid, data, ready, uart_tx, clock_hz: int, bau
             left.next[DATA_BITS - 1] = True
             bits_left.next = bits_left - 1
 
-    @always_comb
-    def drive_ports():
-        ready.next = free
-        uart_tx.next = line
+    drive_ports = assign((ready, uart_tx), lambda: (free, line))
 
     return instances()

@@ -51,9 +51,7 @@ def wishbone_bridge(clk, reset, wb, avm_m0):
     def request():
         avm_m0.write.next = selected and wb.we and not reading
         avm_m0.read.next = selected and not wb.we and not reading
-        avm_m0.address.next = wb.adr
-        avm_m0.writedata.next = wb.dat_w
-        avm_m0.byteenable.next = wb.sel
+        avm_m0.address.next, avm_m0.writedata.next, avm_m0.byteenable.next = wb.adr, wb.dat_w, wb.sel
 
     # reading: a read was accepted and is not answered yet.
     @always_seq(clk.posedge, reset=reset)

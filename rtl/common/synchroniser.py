@@ -21,7 +21,6 @@ def synchroniser(clk, reset, value, held):
 
     @always_seq(clk.posedge, reset=reset)
     def synchronise():
-        arriving.next = value
-        held.next = arriving
+        arriving.next, held.next = value, arriving
 
     return instances()

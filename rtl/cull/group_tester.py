@@ -56,14 +56,12 @@ def group_tester(clk, load, facet, growth, start, column_slope, row_slope, may_h
 
     @always_comb
     def look_ahead():
-        back.next = False
-        end_back.next = False
+        back.next = end_back.next = False
         if facet.axis == 1:
             back.next = column_slope < 0
             end_back.next = end_slope < 0
         elif facet.axis == 2:
-            back.next = row_slope < 0
-            end_back.next = row_slope < 0
+            back.next = end_back.next = row_slope < 0
 
     # Both rays run away from the plane, or along it.
     @always_comb
@@ -90,14 +88,9 @@ def group_tester(clk, load, facet, growth, start, column_slope, row_slope, may_h
 
     @always(clk.posedge)
     def stage_1():
-        load_1.next = load
-        behind_1.next = behind
-        turned_1.next = end_back
+        load_1.next, behind_1.next, turned_1.next = load, behind, end_back
         same_way_1.next = back == end_back
-        under_p_1.next = under_p
-        over_p_1.next = over_p
-        under_q_1.next = under_q
-        over_q_1.next = over_q
+        under_p_1.next, over_p_1.next, under_q_1.next, over_q_1.next = under_p, over_p, under_q, over_q
         way_p_1.next = end_way_p
         low_p_1.next = end_low_p
         high_p_1.next = end_high_p

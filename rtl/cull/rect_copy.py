@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """A copy of the rectangles that an engine has fetched, for a second reader."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import minus, plus, register
+from raycaster.hdl.verbs import assign, minus, plus, register
 from raycaster.rtl.common.widths import AXIS_BITS, WIDE_BITS, index_bits
 
 
@@ -38,10 +38,7 @@ def rect_copy(clk, rects, copy, margin: int, config: Configuration):
     wide_v_low, widen_v_low = minus(v_low, margin, Signed(WIDE_BITS))
     wide_v_high, widen_v_high = plus(v_high, margin, Signed(WIDE_BITS))
 
-    @always(clk.posedge)
-    def follow():
-        at_hand.next = rects.fetch
-        number.next = rects.index
+    follow = register(clk, (at_hand, number), lambda: (rects.fetch, rects.index))
 
     bare = kept.joined(
         axis=rect.axis, position=rect.position, u_low=rect.u_low, u_high=rect.u_high, v_low=rect.v_low,
@@ -51,12 +48,7 @@ def rect_copy(clk, rects, copy, margin: int, config: Configuration):
     write = register(clk, words[number], lambda: bare, at_hand)
     read = register(clk, kept.word, lambda: words[copy.index], copy.fetch)
 
-    @always_comb
-    def extend():
-        u_low.next = kept.u_low
-        u_high.next = kept.u_high
-        v_low.next = kept.v_low
-        v_high.next = kept.v_high
+    extend = assign((u_low, u_high, v_low, v_high), lambda: (kept.u_low, kept.u_high, kept.v_low, kept.v_high))
 
     wide = copy.rect.joined(
         axis=kept.axis, position=kept.position, u_low=wide_u_low, u_high=wide_u_high, v_low=wide_v_low,

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The start values for the columns of a row, for one rectangle after another."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import assign, minus
+from raycaster.hdl.verbs import assign, minus, register
 from raycaster.rtl.common.by_axis import along_a, along_p, along_q, by_axis
 from raycaster.rtl.common.widths import AXIS_BITS, DISTANCE_BITS, exact_slope_bits, index_bits, walk_bits
 from raycaster.rtl.engine.array_multiplier import array_multiplier
@@ -104,22 +104,16 @@ def rect_setup(
             else:
                 number.next = number + 1
 
-    @always_comb
-    def fetch():
-        rects.fetch.next = reading
-        rects.index.next = number
+    fetch = assign((rects.fetch, rects.index), lambda: (reading, number))
 
     @always(clk.posedge)
     def follow():
         asked.next = reading and not reset
         at_hand.next = asked and not reset
         at_hand_2.next = at_hand and not reset
-        number_0.next = number
-        number_1.next = number_0
-        number_2.next = number_1
+        number_0.next, number_1.next, number_2.next = number, number_0, number_1
         usable_0.next = rects.usable[number]
-        usable.next = usable_0
-        usable_2.next = usable
+        usable.next, usable_2.next = usable_0, usable
 
     eyes, slopes = (camera.x, camera.y, camera.z), (slope.x, slope.y, slope.z)
     choices = [
@@ -139,18 +133,12 @@ def rect_setup(
     extend_low_q = assign(low_q, lambda: rects.rect.u_low if rects.rect.axis == 2 else rects.rect.v_low)
     extend_high_q = assign(high_q, lambda: rects.rect.u_high if rects.rect.axis == 2 else rects.rect.v_high)
 
-    @always(clk.posedge)
-    def hold_distances():
-        if at_hand:
-            axis_2.next = rects.rect.axis
-            distance_2.next = distance
-            to_low_p_2.next = to_low_p
-            to_high_p_2.next = to_high_p
-            to_low_q_2.next = to_low_q
-            to_high_q_2.next = to_high_q
-            slope_a_2.next = slope_a
-            slope_p_2.next = slope_p
-            slope_q_2.next = slope_q
+    hold_distances = register(
+        clk,
+        (axis_2, distance_2, to_low_p_2, to_high_p_2, to_low_q_2, to_high_q_2, slope_a_2, slope_p_2, slope_q_2),
+        lambda: (rects.rect.axis, distance, to_low_p, to_high_p, to_low_q, to_high_q, slope_a, slope_p, slope_q),
+        at_hand,
+    )
 
     products = [
         array_multiplier(multiplicand=distance_2, multiplier=slope_p_2, product=way_p),
@@ -181,11 +169,6 @@ def rect_setup(
 
     more = growth.joined(way_p=more_way_p, low_p=more_low_p, high_p=more_high_p, low_q=more_low_q, high_q=more_high_q)
 
-    @always(clk.posedge)
-    def present():
-        if at_hand_2:
-            facet.word.next = new_facet
-            start.word.next = first
-            growth.word.next = more
+    present = register(clk, (facet.word, start.word, growth.word), lambda: (new_facet, first, more), at_hand_2)
 
     return instances()

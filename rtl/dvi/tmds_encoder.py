@@ -72,7 +72,6 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
             symbol.next = controls[int(word_control)]
             disparity.next = 0
             if word_visible:
-                symbol.next = encoded
-                disparity.next = next_disparity
+                symbol.next, disparity.next = encoded, next_disparity
 
     return instances()

@@ -47,8 +47,7 @@ def colour_sum(clk, steps, channel, share, blended, config: Configuration):
 
         @always_comb
         def weigh():
-            at_even.next = 0
-            at_odd.next = 0
+            at_even.next = at_odd.next = 0
             for i in range(0, width, 2):
                 if share[i]:
                     at_even.next = channel << i

@@ -119,8 +119,7 @@ def ray_sequencer(
 
     @always_comb
     def operate():
-        steps.screen_to_ray.next = state == RayState.GENERATE
-        steps.reset_colour.next = state == RayState.GENERATE
+        steps.screen_to_ray.next = steps.reset_colour.next = state == RayState.GENERATE
         steps.reset_z_buf.next = start_ray
         steps.add_colour.next = state == RayState.BLEND
         # The last ray stores no reflection: that would be one mirror too many for an engine that mirrors the eye.

@@ -56,14 +56,10 @@ def rect_sequencer(
     @always(clk.posedge)
     def offer():
         if take or not fetched:
-            upcoming.next = lowest
-            waiting.next = others
+            upcoming.next, waiting.next = lowest, others
             offered.next = candidates != 0
 
-    @always_comb
-    def ask():
-        index.next = upcoming
-        fetch.next = take
+    ask = assign((index, fetch), lambda: (upcoming, take))
 
     @always(clk.posedge)
     def advance():

@@ -64,17 +64,11 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
     @always_comb
     def choose_axis():
         if on_x:
-            eye_q.next = eye.x
-            slope_q.next = slope.dx
-            back_q.next = signs.dx
+            eye_q.next, slope_q.next, back_q.next = eye.x, slope.dx, signs.dx
         elif on_z:
-            eye_q.next = eye.z
-            slope_q.next = slope.dz
-            back_q.next = signs.dz
+            eye_q.next, slope_q.next, back_q.next = eye.z, slope.dz, signs.dz
         else:
-            eye_q.next = eye.y
-            slope_q.next = slope.dy
-            back_q.next = signs.dy
+            eye_q.next, slope_q.next, back_q.next = eye.y, slope.dy, signs.dy
 
     whole = hit_component(
         eye=eye_q, back=back_q, slope=slope_q, distance=found_distance, e=found_slope, component=point
@@ -86,8 +80,7 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
             remainder.next = point[point_bits:COORDINATE_BITS]
             digits.next = point[COORDINATE_BITS:SMALLEST_CELL_BITS]
         else:
-            remainder.next = remainder_2
-            digits.next = digits_2
+            remainder.next, digits.next = remainder_2, digits_2
 
     @always_comb
     def choose_digit():

@@ -4,7 +4,7 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import assign, minus, times
+from raycaster.hdl.verbs import assign, minus, register, times
 
 
 @block
@@ -52,10 +52,7 @@ def extent_tester(
     way_2, way_to_near_2, way_to_far_2 = (unsigned(way_bits) for _ in range(3))
     behind_2, clips_2 = bit(), bit()
 
-    @always_comb
-    def extend():
-        lower.next = low
-        upper.next = high
+    extend = assign((lower, upper), lambda: (low, high))
 
     complement_near = assign(near, lambda: ~upper if back else lower)
     complement_far = assign(far, lambda: ~lower if back else upper)
@@ -76,13 +73,11 @@ def extent_tester(
     choose_first = assign(first, lambda: mirror_distance if clips else to_near_1)
     choose_behind = assign(behind, lambda: passed_1 and not clips)
 
-    @always(clk.posedge)
-    def stage_2():
-        way_2.next = way
-        way_to_near_2.next = way_to_near
-        way_to_far_2.next = way_to_far
-        behind_2.next = behind
-        clips_2.next = clips
+    stage_2 = register(
+        clk,
+        (way_2, way_to_near_2, way_to_far_2, behind_2, clips_2),
+        lambda: (way, way_to_near, way_to_far, behind, clips),
+    )
 
     @always_comb
     def compare():

@@ -69,12 +69,8 @@ def eye_register(
     @always(clk.posedge)
     def keep():
         if steps.screen_to_ray:
-            eye.x.next = camera.x
-            eye.y.next = camera.y
-            eye.z.next = camera.z
-            flipped_x.next = False
-            flipped_y.next = False
-            flipped_z.next = False
+            eye.x.next, eye.y.next, eye.z.next = camera.x, camera.y, camera.z
+            flipped_x.next = flipped_y.next = flipped_z.next = False
         elif steps.store_ray:
             if found_surface.axis == 0:
                 eye.x.next = image

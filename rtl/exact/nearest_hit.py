@@ -44,9 +44,7 @@ def nearest_hit(
             found.next = False
         elif steps.write_z_buf and nearer:
             found.next = True
-            found_distance.next = numerator
-            found_slope.next = denominator
-            found_surface.word.next = offered.word
-            found_at_mirror.next = at_mirror
+            found_distance.next, found_slope.next = numerator, denominator
+            found_surface.word.next, found_at_mirror.next = offered.word, at_mirror
 
     return instances()

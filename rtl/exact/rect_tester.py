@@ -116,8 +116,6 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
     @always(clk.posedge)
     def stage_3():
         hit.next = seen_2.crosses and inside_u and inside_v and not (seen_2.met and in_mirror)
-        at_mirror.next = in_mirror
-        numerator.next = seen_2.n
-        denominator.next = seen_2.e
+        at_mirror.next, numerator.next, denominator.next = in_mirror, seen_2.n, seen_2.e
 
     return instances()

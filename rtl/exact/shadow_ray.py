@@ -74,11 +74,7 @@ def shadow_ray(
 
     extend = assign(light, lambda: light_q)
 
-    @always(clk.posedge)
-    def stage_1():
-        difference_1.next = difference
-        slope_1.next = slope_q
-        back_1.next = back_q
+    stage_1 = register(clk, (difference_1, slope_1, back_1), lambda: (difference, slope_q, back_q))
 
     component = hit_component(
         eye=difference_1, back=back_1, slope=slope_1, distance=found_distance, e=found_slope, component=aimed
@@ -97,14 +93,11 @@ def shadow_ray(
     @always(clk.posedge)
     def keep():
         if steps.aim[1]:
-            shadow_slope.dx.next = magnitude
-            dx.next = back_2
+            shadow_slope.dx.next, dx.next = magnitude, back_2
         if steps.aim[2]:
-            shadow_slope.dy.next = magnitude
-            dy.next = back_2
+            shadow_slope.dy.next, dy.next = magnitude, back_2
         if steps.aim[3]:
-            shadow_slope.dz.next = magnitude
-            dz.next = back_2
+            shadow_slope.dz.next, dz.next = magnitude, back_2
 
     @always(clk.posedge)
     def judge_side():

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A slope component of a primary ray, for a camera that turns."""
 
-from myhdl import always, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, signed, unsigned
@@ -48,10 +48,6 @@ def slope_component(
     # start is the same in all units, so synthesis keeps one of them.
     keep_start = register(clk, start, lambda: total)
 
-    @always(clk.posedge)
-    def load():
-        if steps.screen_to_ray:
-            size.next = component_size
-            negative.next = component_negative
+    load = register(clk, (size, negative), lambda: (component_size, component_negative), steps.screen_to_ray)
 
     return instances()

@@ -82,11 +82,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     clip_chosen = assign(chosen, lambda: slot[index_width:] if (slot >= 0) and (slot < count) else 0)
 
     # All are those of bus.address, as this changes with an access only. A write never comes before the first access.
-    @always(clk.posedge)
-    def follow_address():
-        if bus.access:
-            in_table.next = found
-            index.next = chosen
+    follow_address = register(clk, (in_table, index), lambda: (found, chosen), bus.access)
 
     @always_seq(clk.posedge, reset=reset)
     def follow_written():
@@ -129,9 +125,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
 
     @always_comb
     def select_word():
-        mask_0.next = 0
-        mask_1.next = 0
-        mask_2.next = 0
+        mask_0.next = mask_1.next = mask_2.next = 0
         if bus.address[2:] == 0:
             mask_0.next = bus.mask
         elif bus.address[2:] == 1:
@@ -145,10 +139,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     whole_mask = mask.joined(corner_0=mask_0, corner_1=mask_1, surface=mask_2, pattern=mask_3)
     whole_data = data.joined(corner_0=bus.data, corner_1=bus.data, surface=bus.data, pattern=bus.data)
 
-    @always_comb
-    def spread():
-        mask.word.next = whole_mask
-        data.word.next = whole_data
+    spread = assign((mask.word, data.word), lambda: (whole_mask, whole_data))
 
     merge = assign(merged.word, lambda: ((old.word & ~mask.word) | (data.word & mask.word)) & implemented)
     store_shadow = register(clk, shadow_words[index], lambda: merged.word, write)
@@ -160,10 +151,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
 
     # Merging and sorting take a cycle each. No commit comes too early, because the write that requests it takes a
     # cycle.
-    @always(clk.posedge)
-    def hand_over():
-        latest.word.next = merged.word
-        latest_index.next = index
+    hand_over = register(clk, (latest.word, latest_index), lambda: (merged.word, index))
 
     @always_seq(clk.posedge, reset=reset)
     def follow_write():

@@ -40,14 +40,12 @@ def rect_slot(clk, reset, bus, storing, index, number, bank, enable, flat, copie
     @always_seq(clk.posedge, reset=reset)
     def commit():
         if bus.commit:
-            pending.next = shadow
-            pending_usable.next = shadow_usable
+            pending.next, pending_usable.next = shadow, shadow_usable
 
     @always_seq(clk.posedge, reset=reset)
     def go_live():
         if bus.go_live:
-            live.next = pending
-            usable.next = pending_usable
+            live.next, usable.next = pending, pending_usable
 
     whole = copies.joined(shadow=shadow, pending=pending, live=live)
     join = assign(copies.word, lambda: whole)

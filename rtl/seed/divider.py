@@ -55,8 +55,7 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
             divisor_held.next = divisor
             too_large.next = dividend[dividend_width:quotient_width] >= divisor
         else:
-            remainder.next = last_remainder
-            pending.next = last_pending
+            remainder.next, pending.next = last_remainder, last_pending
 
     if not round_to_nearest:
 

@@ -76,9 +76,7 @@ def intersection_helper(
     @always(clk.posedge)
     def carry():
         if steps.find_intersection:
-            started_b.next = b
-            started_e.next = e
-            started.word.next = operands
+            started_b.next, started_e.next, started.word.next = b, e, operands
         if steps.load_divider:
             loaded.word.next = started.word
         if steps.store_quotient:
@@ -89,8 +87,7 @@ def intersection_helper(
     # If the quotient overflows, the point is outside the world.
     @always_comb
     def judge():
-        towards.next = started.towards
-        distance.next = stored.distance
+        towards.next, distance.next = started.towards, stored.distance
         valid.next = stored.towards and not overflow
 
     @always(clk.posedge)

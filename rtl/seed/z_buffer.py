@@ -44,9 +44,7 @@ def z_buffer(
             found.next = False
         elif steps.write_z_buf and nearer:
             found.next = True
-            nearest.next = depth
-            found_axis.next = offered.axis
-            found_colour.next = colour
+            nearest.next, found_axis.next, found_colour.next = depth, offered.axis, colour
             found_point.word.next = point.word
 
     if offered.has("mirror"):

@@ -33,15 +33,12 @@ def bank_feed(
     def pass_writes():
         near_writes.next = 0
         if write:
-            near_writes.next = write_banks
-            near_write_place.next = write_place
-            near_written.next = written
+            near_writes.next, near_write_place.next, near_written.next = write_banks, write_place, written
 
     @always(clk.posedge)
     def pass_reads():
         near_reads.next = 0
         if read:
-            near_reads.next = read_banks
-            near_read_place.next = read_place
+            near_reads.next, near_read_place.next = read_banks, read_place
 
     return instances()

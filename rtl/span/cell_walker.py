@@ -89,10 +89,7 @@ def cell_walker(
             if (grid.cell == size) and not finding:
                 limit.next = (number << (size + smallest)) % (1 << limit_bits)
 
-    @always_comb
-    def extend():
-        whole_limit.next = limit
-        to_plane.next = grid.distance
+    extend = assign((whole_limit, to_plane), lambda: (limit, grid.distance))
 
     # An extra bit, as the present cell and the grid may belong to two surfaces while nothing is asked.
     measure = assign(difference, lambda: whole_limit - eye_w)
@@ -124,9 +121,7 @@ def cell_walker(
     @always(clk.posedge)
     def keep_first():
         if (state != WalkState.IDLE) and answer.valid and (answer.number == 0):
-            above_left.next = answer.left
-            above_right.next = answer.right
-            above_growth.next = answer.growth
+            above_left.next, above_right.next, above_growth.next = answer.left, answer.right, answer.growth
 
     see_decides = assign(decides, lambda: (state == WalkState.ANSWER) and answer.valid and (answer.number == 1))
     see_up = assign(up, lambda: above_right >= 0)
@@ -141,21 +136,15 @@ def cell_walker(
     @always_comb
     def decide():
         crosses.next = decides and (finding or ((up or down) and not at_once))
-        value.next = answer.left
-        growth.next = answer.growth
+        value.next, growth.next = answer.left, answer.growth
         if finding:
-            value.next = eighth
-            growth.next = slope
+            value.next, growth.next = eighth, slope
         elif up:
-            value.next = above_left
-            growth.next = above_growth
+            value.next, growth.next = above_left, above_growth
 
     crossed = asks.division.joined(value=value, growth=growth)
 
-    @always_comb
-    def start_division():
-        asks.divide.next = crosses
-        asks.division.word.next = crossed
+    start_division = assign((asks.divide, asks.division.word), lambda: (crosses, crossed))
 
     see_quotient = assign(quotient, lambda: (answer.columns - 1) % (1 << width))
 
@@ -169,9 +158,7 @@ def cell_walker(
     @always_comb
     def see_done():
         done.next = (decides and not crosses) or ((state == WalkState.DIVIDE) and answer.divided and not finding)
-        found_cell.next = present
-        rises.next = up
-        next_column.next = grid.stop
+        found_cell.next, rises.next, next_column.next = present, up, grid.stop
         if state == WalkState.DIVIDE:
             rises.next = rose
             next_column.next = (column + answer.columns) % (1 << width)
@@ -199,14 +186,12 @@ def cell_walker(
     @always(clk.posedge)
     def follow():
         if start:
-            finding.next = find
-            present.next = known_cell
+            finding.next, present.next = find, known_cell
             second.next = False
         elif state == WalkState.ASK:
             second.next = True
         elif (state == WalkState.DIVIDE) and answer.divided:
-            second.next = False
-            finding.next = False
+            second.next = finding.next = False
             if finding:
                 present.next = place
         if decides:

@@ -95,8 +95,7 @@ def clipper(clk, reset, chain, opened, met, asks, answer, append, entry, idle, c
     def clip():
         ended.next = last and not reset
         refused.next = refuses or (refused and not renewed)
-        start.next = low
-        stop.next = high
+        start.next, stop.next = low, high
         if narrows:
             if rises and (border > low):
                 start.next = border
@@ -108,8 +107,7 @@ def clipper(clk, reset, chain, opened, met, asks, answer, append, entry, idle, c
     @always(clk.posedge)
     def count_entries():
         if reset:
-            put.next = 0
-            taken.next = 0
+            put.next = taken.next = 0
         else:
             if opened:
                 put.next = (put + 1) % count

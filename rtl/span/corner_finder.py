@@ -50,8 +50,7 @@ def corner_finder(
 
     @always_comb
     def measure():
-        to_winner.next = winner.distance
-        to_mirror.next = chain.distance
+        to_winner.next, to_mirror.next = winner.distance, chain.distance
         last.next = (stop - 1) % (1 << width)
         next_column.next = (column + 1) % (1 << width)
 

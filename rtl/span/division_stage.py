@@ -24,9 +24,7 @@ def division_stage(clk, remainder, digits, divisor, next_remainder, next_digits,
 
     @always(clk.posedge)
     def keep():
-        kept_remainder.next = remainder
-        kept_digits.next = digits
-        next_divisor.next = divisor
+        kept_remainder.next, kept_digits.next, next_divisor.next = remainder, digits, divisor
 
     if steps == 1:
         first = divider_step(

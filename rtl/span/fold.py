@@ -52,12 +52,8 @@ def fold(chain, winner, column, stop, corner, weight, folded, config: Configurat
 
     @always_comb
     def place():
-        eye_x.next = chain.eye_x
-        eye_y.next = chain.eye_y
-        eye_z.next = chain.eye_z
-        back_x.next = chain.back_x
-        back_y.next = chain.back_y
-        back_z.next = chain.back_z
+        eye_x.next, eye_y.next, eye_z.next = chain.eye_x, chain.eye_y, chain.eye_z
+        back_x.next, back_y.next, back_z.next = chain.back_x, chain.back_y, chain.back_z
         met_x.next = corner and chain.met_x
         met_y.next = corner and chain.met_y
         met_z.next = corner and chain.met_z

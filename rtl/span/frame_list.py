@@ -82,8 +82,7 @@ def frame_list(
         @always_comb
         def connect():
             offered.next = valid != 0
-            head.word.next = runs
-            ready.next = take
+            head.word.next, ready.next = runs, take
 
     else:
         queued = [ListEntry(columns, pixel_bits).cut(runs, i) for i in range(units)]

@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.signals import Signed, bit, signed, tied, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.by_axis import along_a, along_u, along_v, by_axis
 from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.records import Rect
@@ -96,8 +96,7 @@ def half_lines(
     @always(clk.posedge)
     def see_slope():
         if reset:
-            seeing.next = False
-            walking.next = False
+            seeing.next = walking.next = False
         elif start:
             seeing.next = True
             asked_axis.next = 0
@@ -166,8 +165,7 @@ def half_lines(
     @always_comb
     def show_fetch():
         moving.next = fetch or (seeing and asked_axis == 0)
-        rects.index.next = upcoming
-        rects.fetch.next = fetch
+        rects.index.next, rects.fetch.next = upcoming, fetch
 
     @always(clk.posedge)
     def offer():
@@ -177,8 +175,7 @@ def half_lines(
             waiting.next = rects.usable
         elif moving:
             offered.next = waiting != 0
-            upcoming.next = lowest
-            waiting.next = others
+            upcoming.next, waiting.next = lowest, others
 
     @always(clk.posedge)
     def follow_fetch():
@@ -234,9 +231,7 @@ def half_lines(
             weighed.next = False
         if passes:
             weighed_rect.word.next = rects.rect.word
-            weighed_entry.word.next = met_rectangle
-            weighed_point.next = point
-            weighed_apart.next = apart
+            weighed_entry.word.next, weighed_point.next, weighed_apart.next = met_rectangle, point, apart
 
     see_ahead_left = assign(ahead_left, lambda: aft_left_a if weighed_entry.back else fore_left_a)
     see_ahead_right = assign(ahead_right, lambda: aft_right_a if weighed_entry.back else fore_right_a)
@@ -252,10 +247,7 @@ def half_lines(
         take.next = walking and weighed and (skip or ready)
         accept.next = walking and weighed and ready and not skip
 
-    @always_comb
-    def announce():
-        opened.next = accept
-        entry.word.next = weighed_entry.word
+    announce = assign((opened, entry.word), lambda: (accept, weighed_entry.word))
 
     @always(clk.posedge)
     def issue():
@@ -272,22 +264,16 @@ def half_lines(
         elif issuing:
             number.next = (number + 1) % (1 << NUMBER_BITS)
 
-    @always(clk.posedge)
-    def hold():
-        if accept:
-            rect_1.word.next = weighed_rect.word
-            entry_1.word.next = entry.word
+    hold = register(clk, (rect_1.word, entry_1.word), lambda: (weighed_rect.word, entry.word), accept)
 
     see_end = assign(walked, lambda: walking and not (offered or at_hand or weighed or issuing))
 
     # The lines of the rectangle that is held.
     @always_comb
     def choose_extent():
-        low.next = False
-        on_u.next = False
+        low.next = on_u.next = False
         if number == U_LOW:
-            low.next = True
-            on_u.next = True
+            low.next = on_u.next = True
         elif number == U_HIGH:
             on_u.next = True
         elif number == V_LOW:
@@ -317,10 +303,7 @@ def half_lines(
 
     choose_axis = assign(axis_w, lambda: axis_u if on_u else axis_v)
 
-    @always_comb
-    def extend_bound():
-        whole_bound.next = bound
-        whole_distance.next = entry_1.distance
+    extend_bound = assign((whole_bound, whole_distance), lambda: (bound, entry_1.distance))
 
     measure_bound = assign(offset, lambda: whole_bound - eye_w)
 
@@ -329,10 +312,7 @@ def half_lines(
             clk=clk, chain=chain, rect=rects.rect, hidden=hidden, crosses=crosses, config=config
         )  # fmt: skip
 
-        @always_comb
-        def see_mirror():
-            mirror_axis.next = chain.axis
-            mirror_distance.next = chain.distance
+        see_mirror = assign((mirror_axis, mirror_distance), lambda: (chain.axis, chain.distance))
 
         see_last_number = assign(last_number, lambda: BEYOND if crosses_1 else V_HIGH)
 
@@ -350,24 +330,15 @@ def half_lines(
         half_line.next = True
         number_asked.next = number
         strict.next = False
-        axis_1.next = axis_w
-        back_1.next = back_w
-        factor_1.next = whole_distance
-        axis_2.next = entry_1.axis
-        back_2.next = entry_1.back
-        factor_2.next = offset
+        axis_1.next, back_1.next, factor_1.next = axis_w, back_w, whole_distance
+        axis_2.next, back_2.next, factor_2.next = entry_1.axis, entry_1.back, offset
         if seeing:
             half_line.next = False
-            number_asked.next = asked_axis
-            axis_1.next = asked_axis
-            back_1.next = False
-            factor_1.next = 1
-            axis_2.next = asked_axis
-            back_2.next = False
-            factor_2.next = 0
+            number_asked.next = axis_1.next = asked_axis
+            back_1.next, factor_1.next = False, 1
+            axis_2.next, back_2.next, factor_2.next = asked_axis, False, 0
         elif number == AHEAD:
-            axis_1.next = entry_1.axis
-            back_1.next = entry_1.back
+            axis_1.next, back_1.next = entry_1.axis, entry_1.back
             factor_1.next = 1
             factor_2.next = 0
             strict.next = True
@@ -376,17 +347,10 @@ def half_lines(
                 back_2.next = False
                 factor_2.next = whole_distance
         elif number == BEYOND:
-            axis_1.next = mirror_axis
-            back_1.next = chain.back
-            factor_2.next = mirror_distance
-            strict.next = met
+            axis_1.next, back_1.next, factor_2.next, strict.next = mirror_axis, chain.back, mirror_distance, met
         elif not low:
-            axis_1.next = entry_1.axis
-            back_1.next = entry_1.back
-            factor_1.next = offset
-            axis_2.next = axis_w
-            back_2.next = back_w
-            factor_2.next = whole_distance
+            axis_1.next, back_1.next, factor_1.next = entry_1.axis, entry_1.back, offset
+            axis_2.next, back_2.next, factor_2.next = axis_w, back_w, whole_distance
 
     right = unsigned(columns)
 

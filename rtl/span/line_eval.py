@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.widths import line_bits, line_factor_bits, operand_bits, operand_growth_bits
 from raycaster.rtl.span.operand_ends import operand_ends
 from raycaster.rtl.span.records import NUMBER_BITS, Query
@@ -64,23 +64,12 @@ def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configur
     @always(clk.posedge)
     def follow():
         if reset:
-            asked_1.next = False
-            asked_2.next = False
-            asked_3.next = False
-            asked_4.next = False
-            answer.valid.next = False
+            asked_1.next = asked_2.next = asked_3.next = asked_4.next = answer.valid.next = False
         else:
-            asked_1.next = ask
-            asked_2.next = asked_1
-            asked_3.next = asked_2
-            asked_4.next = asked_3
+            asked_1.next, asked_2.next, asked_3.next, asked_4.next = ask, asked_1, asked_2, asked_3
             answer.valid.next = asked_4
 
-    @always(clk.posedge)
-    def carry():
-        query_1.word.next = query.word
-        query_2.word.next = query_1.word
-        query_3.word.next = query_2.word
+    carry = register(clk, (query_1.word, query_2.word, query_3.word), lambda: (query.word, query_1.word, query_2.word))
 
     # A factor is negated, as it has fewer bits than the values.
     @always_comb
@@ -90,14 +79,12 @@ def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configur
 
     @always(clk.posedge)
     def turn():
-        factor_1_2.next = query_1.factor_1
-        factor_2_2.next = query_1.factor_2
+        factor_1_2.next, factor_2_2.next = query_1.factor_1, query_1.factor_2
         if query_1.back_1:
             factor_1_2.next = opposite_1[factor_bits:].signed()
         if query_1.back_2:
             factor_2_2.next = opposite_2[factor_bits:].signed()
-        factor_1_3.next = factor_1_2
-        factor_2_3.next = factor_2_2
+        factor_1_3.next, factor_2_3.next = factor_1_2, factor_2_2
 
     if config.turn or config.light:
 
@@ -116,12 +103,9 @@ def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configur
         ax_right.next = factor_1_3 * x_right
         by_left.next = factor_2_3 * y_left
         by_right.next = factor_2_3 * y_right
-        ax_grown.next = ax_growth
-        by_grown.next = by_growth
-        strict_4.next = query_3.strict
-        half_line_4.next = query_3.half_line
-        last_4.next = query_3.last
-        number_4.next = query_3.number
+        ax_grown.next, by_grown.next = ax_growth, by_growth
+        strict_4.next, half_line_4.next = query_3.strict, query_3.half_line
+        last_4.next, number_4.next = query_3.last, query_3.number
 
     @always_comb
     def subtract():
@@ -134,8 +118,6 @@ def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configur
         answer.left.next = left[kept:].signed()
         answer.right.next = right[kept:].signed()
         answer.growth.next = grown[grown_bits:].signed()
-        answer.half_line.next = half_line_4
-        answer.last.next = last_4
-        answer.number.next = number_4
+        answer.half_line.next, answer.last.next, answer.number.next = half_line_4, last_4, number_4
 
     return instances()

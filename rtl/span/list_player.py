@@ -113,8 +113,7 @@ def list_player(
 
         @always_comb
         def find_firsts():
-            first_odd.next = place[bits:1]
-            first_even.next = place[bits:1]
+            first_odd.next = first_even.next = place[bits:1]
             if place == last:
                 first_even.next = 0
             elif place[0]:

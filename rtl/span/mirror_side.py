@@ -56,14 +56,11 @@ def mirror_side(clk, chain, rect, hidden, crosses, config: Configuration):
     @always_comb
     def choose_extent():
         parallel.next = rect.axis == chain.axis
-        low.next = rect.v_low
-        high.next = rect.v_high
+        low.next, high.next = rect.v_low, rect.v_high
         if rect.axis == chain.axis:
-            low.next = rect.position
-            high.next = rect.position
+            low.next = high.next = rect.position
         elif axis_u == chain.axis:
-            low.next = rect.u_low
-            high.next = rect.u_high
+            low.next, high.next = rect.u_low, rect.u_high
 
     @always_comb
     def compare():

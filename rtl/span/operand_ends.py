@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.by_axis import by_axis
 from raycaster.rtl.common.widths import AXIS_BITS, column_bits, span_slope_bits, step_bits
 
@@ -47,10 +47,7 @@ def operand_ends(
     else:
         see_change = assign(move, lambda: 1 if axis == 1 else 0)
 
-    @always_comb
-    def extend():
-        column_left.next = left
-        column_right.next = right
+    extend = assign((column_left, column_right), lambda: (left, right))
 
     if config.turn:
 
@@ -63,12 +60,7 @@ def operand_ends(
         multiply_to_left = assign(to_left, lambda: column_left if move != 0 else 0)
         multiply_to_right = assign(to_right, lambda: column_right if move != 0 else 0)
 
-    @always(clk.posedge)
-    def stage_1():
-        start_1.next = start
-        step_1.next = move
-        to_left_1.next = to_left
-        to_right_1.next = to_right
+    stage_1 = register(clk, (start_1, step_1, to_left_1, to_right_1), lambda: (start, move, to_left, to_right))
 
     @always_comb
     def add():
@@ -78,10 +70,7 @@ def operand_ends(
     if config.light:
         axis_1, light_1 = unsigned(AXIS_BITS), bit()
 
-        @always(clk.posedge)
-        def follow():
-            axis_1.next = axis
-            light_1.next = from_light
+        follow = register(clk, (axis_1, light_1), lambda: (axis, from_light))
 
         @always(clk.posedge)
         def stage_2():
@@ -90,21 +79,13 @@ def operand_ends(
                 at_right.next = whole_right[slope_bits:].signed()
                 growth.next = step_1
             elif axis_1 == 0:
-                at_left.next = aim.left_x
-                at_right.next = aim.right_x
-                growth.next = aim.growth_x
+                at_left.next, at_right.next, growth.next = aim.left_x, aim.right_x, aim.growth_x
             elif axis_1 == 1:
-                at_left.next = aim.left_y
-                at_right.next = aim.right_y
-                growth.next = aim.growth_y
+                at_left.next, at_right.next, growth.next = aim.left_y, aim.right_y, aim.growth_y
             elif axis_1 == 2:
-                at_left.next = aim.left_z
-                at_right.next = aim.right_z
-                growth.next = aim.growth_z
+                at_left.next, at_right.next, growth.next = aim.left_z, aim.right_z, aim.growth_z
             else:
-                at_left.next = aim.left_e
-                at_right.next = aim.right_e
-                growth.next = aim.growth_e
+                at_left.next, at_right.next, growth.next = aim.left_e, aim.right_e, aim.growth_e
 
     else:
 

@@ -70,9 +70,7 @@ def painter(
         @always(clk.posedge)
         def keep_seen():
             sums.next = (state == PaintState.SUM) and not reset
-            share.next = seen_share
-            colour.word.next = seen_colour
-            next_end.next = next_column
+            share.next, colour.word.next, next_end.next = seen_share, seen_colour, next_column
 
         @always_comb
         def see_whole():
@@ -116,9 +114,7 @@ def painter(
             if last:
                 seen.next = 0
         if reset or offers:
-            red.next = 0
-            green.next = 0
-            blue.next = 0
+            red.next = green.next = blue.next = 0
         elif sums:
             red.next = (red + red_part) % (1 << sum_bits)
             green.next = (green + green_part) % (1 << sum_bits)
@@ -148,7 +144,6 @@ def painter(
         elif run.ready:
             run.valid.next = False
         if offers:
-            run.end.next = place
-            run.colour.next = mixed.word
+            run.end.next, run.colour.next = place, mixed.word
 
     return instances()

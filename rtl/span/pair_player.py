@@ -58,11 +58,9 @@ def pair_player(clk, playing, visible_line, next_column, odd, head_0, head_1, ta
 
     @always(clk.posedge)
     def show():
-        left.next = 0
-        right.next = 0
+        left.next = right.next = 0
         if playing and visible_line:
-            left.next = now.pixel
-            right.next = now.pixel
+            left.next = right.next = now.pixel
             if splits:
                 right.next = after.pixel
 

@@ -70,8 +70,7 @@ def read_ahead(
     @always(clk.posedge)
     def count():
         if restart:
-            taken_slots.next = 0
-            filled_slots.next = 0
+            taken_slots.next = filled_slots.next = 0
             offered.next = False
         else:
             if fetch and not take:
@@ -92,8 +91,7 @@ def read_ahead(
     @always(clk.posedge)
     def circle():
         if restart:
-            put_slot.next = 0
-            head_slot.next = 0
+            put_slot.next = head_slot.next = 0
         else:
             if arrives:
                 put_slot.next = (put_slot + 1) % slot_count

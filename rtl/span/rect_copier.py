@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The way of the live rectangles to the units' own tables."""
 
-from myhdl import always, always_seq, block, instances
+from myhdl import always_seq, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 
 
 @block
@@ -36,10 +36,7 @@ def rect_copier(clk, reset, start, rects, store, number, copying, config: Config
             else:
                 rects.index.next = rects.index + 1
 
-    @always(clk.posedge)
-    def follow():
-        store.next = fetching
-        number.next = rects.index
+    follow = register(clk, (store, number), lambda: (fetching, rects.index))
 
     show = assign(copying, lambda: fetching or store)
 

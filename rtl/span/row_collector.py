@@ -93,7 +93,6 @@ def row_collector(
     def store():
         write.next = take and not reset
         whole.next = take and ends and (rows_left == 1) and not reset
-        place.next = next_place
-        entry.word.next = head.word
+        place.next, entry.word.next = next_place, head.word
 
     return instances()

@@ -47,10 +47,7 @@ def row_dealer(clk, reset, new_frame, room, done, first_row, next_row, start, ro
         if deals:
             starts.next[turn] = True
 
-    @always_comb
-    def start_row():
-        next_row.next = deals
-        start.next = starts
+    start_row = assign((next_row, start), lambda: (deals, starts))
 
     @always(clk.posedge)
     def count():

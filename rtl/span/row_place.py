@@ -32,10 +32,8 @@ def row_place(clk, reset, scan, view_run, taken, restart, place, playing):
 
     @always_seq(clk.posedge, reset=reset)
     def remember():
-        was_visible.next = scan.visible_line
-        screen_starts.next = scan.start_screen
-        row_starts.next = scan.start_row
-        taken_before.next = taken
+        was_visible.next, screen_starts.next = scan.visible_line, scan.start_screen
+        row_starts.next, taken_before.next = scan.start_row, taken
 
     find_end = assign(line_ends, lambda: was_visible and not scan.visible_line)
     find_present = assign(present, lambda: (place + taken_before) % limit)
@@ -48,13 +46,10 @@ def row_place(clk, reset, scan, view_run, taken, restart, place, playing):
             playing.next = False
             next_first.next = 0
         elif row_starts:
-            playing.next = view_run
-            restart.next = view_run
-            row_first.next = next_first
-            place.next = next_first
+            playing.next = restart.next = view_run
+            row_first.next = place.next = next_first
         elif line_ends:
-            restart.next = playing
-            place.next = row_first
+            restart.next, place.next = playing, row_first
             if playing:
                 next_first.next = present
         else:

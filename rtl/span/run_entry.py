@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """A unit's run as an entry of a list."""
 
-from myhdl import ConcatSignal, always_comb, block, instances
+from myhdl import ConcatSignal, block, instances
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
+from raycaster.hdl.verbs import assign
 
 
 @block
@@ -21,9 +22,6 @@ def run_entry(run, ready, entry, config: Configuration):
     pixel = ConcatSignal(red, green, blue)
     whole = entry.joined(end=run.end, pixel=pixel)
 
-    @always_comb
-    def join():
-        entry.word.next = whole
-        run.ready.next = ready
+    join = assign((entry.word, run.ready), lambda: (whole, ready))
 
     return instances()

@@ -66,8 +66,7 @@ def run_joiner(clk, reset, part, run, done, config: Configuration):
         elif run.ready:
             run.valid.next = False
         if leaves:
-            run.end.next = held_end
-            run.colour.next = colour
+            run.end.next, run.colour.next = held_end, colour
 
     finish = register(clk, done, lambda: run.valid and run.ready and (run.end == columns) and not reset)
 

@@ -70,8 +70,7 @@ def run_queue(
     def count():
         if reset:
             unread.next = 0
-            ready.next = True
-            room.next = True
+            ready.next = room.next = True
         elif put != fetch:
             ready.next = fetch or (unread != last)
             unread.next = (unread + change) % (1 << len(unread))

@@ -64,9 +64,7 @@ def shadow_finder(
 
     @always_comb
     def extend_light():
-        light_x.next = camera.light_x
-        light_y.next = camera.light_y
-        light_z.next = camera.light_z
+        light_x.next, light_y.next, light_z.next = camera.light_x, camera.light_y, camera.light_z
 
     see_axis = assign(axis_1, lambda: winner.axis if axis == 3 else axis[AXIS_BITS:])
 
@@ -107,21 +105,13 @@ def shadow_finder(
     def keep():
         if (state == ShadowState.AIM) and answer.valid:
             if answer.number == 0:
-                aim.left_x.next = left
-                aim.right_x.next = right
-                aim.growth_x.next = growth
+                aim.left_x.next, aim.right_x.next, aim.growth_x.next = left, right, growth
             elif answer.number == 1:
-                aim.left_y.next = left
-                aim.right_y.next = right
-                aim.growth_y.next = growth
+                aim.left_y.next, aim.right_y.next, aim.growth_y.next = left, right, growth
             elif answer.number == 2:
-                aim.left_z.next = left
-                aim.right_z.next = right
-                aim.growth_z.next = growth
+                aim.left_z.next, aim.right_z.next, aim.growth_z.next = left, right, growth
             else:
-                aim.left_e.next = left
-                aim.right_e.next = right
-                aim.growth_e.next = growth
+                aim.left_e.next, aim.right_e.next, aim.growth_e.next = left, right, growth
 
     rays = fan.joined(
         start=column, stop=stop, eye_x=light_x, eye_y=light_y, eye_z=light_z, back_x=none, back_y=none, back_z=none,
@@ -131,8 +121,7 @@ def shadow_finder(
 
     @always_comb
     def show():
-        fan.word.next = rays
-        begin_set_up.next = entering
+        fan.word.next, begin_set_up.next = rays, entering
         done.next = (state == ShadowState.SET_UP) and set_up_done
 
     @always(clk.posedge)

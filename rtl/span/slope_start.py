@@ -5,7 +5,7 @@ from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit, signed
-from raycaster.hdl.verbs import assign, minus, times
+from raycaster.hdl.verbs import assign, minus, register, times
 
 
 @block
@@ -32,12 +32,7 @@ def slope_start(clk, first_row, next_row, forward, right, up, component, config:
     ahead_1, aside_1, above_1, whole = (signed(bits) for _ in range(4))
     begins = bit()
 
-    @always(clk.posedge)
-    def keep_products():
-        begins.next = first_row
-        ahead_1.next = ahead
-        aside_1.next = aside
-        above_1.next = above
+    keep_products = register(clk, (begins, ahead_1, aside_1, above_1), lambda: (first_row, ahead, aside, above))
 
     add = assign(whole, lambda: ahead_1 - aside_1 + above_1)
 

@@ -83,9 +83,7 @@ def span_control(
 
     @always_comb
     def see_camera():
-        eye_x.next = camera.x
-        eye_y.next = camera.y
-        eye_z.next = camera.z
+        eye_x.next, eye_y.next, eye_z.next = camera.x, camera.y, camera.z
 
     first = first_chain.joined(
         start=no_column, stop=all_columns, eye_x=eye_x, eye_y=eye_y, eye_z=eye_z, back_x=False, back_y=False,
@@ -146,8 +144,7 @@ def span_control(
         @always(clk.posedge)
         def keep_passed():
             if state == SpanState.SPAN:
-                passed_on.next = passed
-                ending.next = leaf
+                passed_on.next, ending.next = passed, leaf
 
     see_empty = assign(empty, lambda: swept_stop == column)
 
@@ -216,9 +213,7 @@ def span_control(
             gap.next = True
             count.next = entry_count
         elif state == SpanState.SWEEP:
-            stop.next = swept_stop
-            inherited.next = swept_inherited
-            heir.word.next = swept_heir.word
+            stop.next, inherited.next, heir.word.next = swept_stop, swept_inherited, swept_heir.word
         elif state == SpanState.DESCEND:
             chain.word.next = folded.word
             level.next = (level + 1) % (1 << len(level))
@@ -227,11 +222,8 @@ def span_control(
             level.next = (level - 1) % (1 << len(level))
             winner.word.next = frame.winner
             gap.next = False
-            column.next = frame.part_stop
-            stop.next = frame.stop
-            heir.word.next = frame.heir
-            inherited.next = frame.inherited
-            count.next = frame.count
+            column.next, stop.next, heir.word.next = frame.part_stop, frame.stop, frame.heir
+            inherited.next, count.next = frame.inherited, frame.count
         elif state == SpanState.INHERIT:
             winner.word.next = heir.word
             gap.next = not inherited

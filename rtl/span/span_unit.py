@@ -130,10 +130,8 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
 
         @always_comb
         def show_surface():
-            given.word.next = plain
-            painted.next = begin_paint
-            seen_share.next = surface.share
-            seen_colour.next = surface.colour
+            given.word.next, painted.next = plain, begin_paint
+            seen_share.next, seen_colour.next = surface.share, surface.colour
 
     # The shadows on a surface are found like the entries of a chain.
     if config.light:
@@ -179,9 +177,7 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
     @always(clk.posedge)
     def keep_slope():
         if start:
-            first_slope.x.next = slope.x
-            first_slope.y.next = slope.y
-            first_slope.z.next = slope.z
+            first_slope.x.next, first_slope.y.next, first_slope.z.next = slope.x, slope.y, slope.z
 
     # The camera is far from most units.
     if config.turn:
@@ -189,9 +185,7 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
         @always(clk.posedge)
         def keep_step():
             if start:
-                step.x.next = camera.right_x
-                step.y.next = camera.right_y
-                step.z.next = camera.right_z
+                step.x.next, step.y.next, step.z.next = camera.right_x, camera.right_y, camera.right_z
 
     # One of them works at a time.
     choose_fetch = assign(rects.fetch, lambda: walk.fetch or fetch)

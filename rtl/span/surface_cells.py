@@ -124,8 +124,7 @@ def surface_cells(
         entering.next = patterned or wants_v or needs_u or needs_v
         if reset:
             state.next = CellsState.IDLE
-            painting.next = False
-            entering.next = False
+            painting.next = entering.next = False
         elif patterned or needs_u or needs_v:
             state.next = CellsState.WALK
             painting.next = patterned

@@ -118,20 +118,16 @@ def surface_light(
         entering.next = lit or found or needs
         if reset:
             state.next = LightState.IDLE
-            busy.next = False
-            entering.next = False
-            painting.next = False
+            busy.next = entering.next = painting.next = False
         elif lit:
             state.next = LightState.FIND
-            busy.next = True
-            painting.next = True
+            busy.next = painting.next = True
         elif found or needs:
             state.next = LightState.SCAN
             busy.next = True
         elif scanned:
             state.next = LightState.IDLE
-            busy.next = False
-            painting.next = False
+            busy.next = painting.next = False
 
     finder = shadow_finder(
         clk=clk, reset=reset, start=find, chain=chain, winner=winner, camera=camera, column=column, stop=stop,
@@ -143,9 +139,6 @@ def surface_light(
         read=read, place=read_place, dark=now_dark, next_dark=next_dark, done=scanned, config=config,
     )  # fmt: skip
 
-    @always_comb
-    def show():
-        dark.next = shadows.dark
-        next_column.next = shadows.until
+    show = assign((dark, next_column), lambda: (shadows.dark, shadows.until))
 
     return instances()

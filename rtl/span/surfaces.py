@@ -111,12 +111,7 @@ def surfaces(
         dimmer = shade_colour(colour=bright, dark=dark, shade=camera.light_shade, shaded=seen_colour)
 
     else:
-
-        @always_comb
-        def show_colour():
-            seen_colour.next = pattern
-            painted.next = cells_painted
-            stepped.next = cells_stepped
+        show_colour = assign((seen_colour, painted, stepped), lambda: (pattern, cells_painted, cells_stepped))
 
     if patterns and light:
         see_next = assign(next_column, lambda: next_light if next_light < next_cells else next_cells)

@@ -107,12 +107,8 @@ def sweep(
             if left_over != 0:
                 rest.next = left_over - 1
             present.word.next = tested.word
-            left_1.next = left
-            in_time_1.next = in_time
-            meets_1.next = meets
-            nearer_1.next = nearer
-            same_1.next = same
-            outlasts_1.next = outlasts
+            left_1.next, in_time_1.next, meets_1.next = left, in_time, meets
+            nearer_1.next, same_1.next, outlasts_1.next = nearer, same, outlasts
 
     # Where the entry would come first: where both are met, or after a division at the crossing.
     find_place = assign(at, lambda: crossing if state == SweepState.CROSS else left_1)
@@ -140,9 +136,7 @@ def sweep(
     # The column at which the entry would follow, if it does: here, at left_1, after a division, or at stop.
     @always_comb
     def find():
-        found.next = False
-        here.next = False
-        ordered.next = False
+        found.next = here.next = ordered.next = False
         if judging:
             if gap or not meets_1:
                 found.next = in_time_1
@@ -164,16 +158,14 @@ def sweep(
 
     @always_comb
     def start_division():
-        crosses.next = (state == SweepState.ORDER) and answer.valid and changes
-        asks.divide.next = (state == SweepState.ORDER) and answer.valid and changes
+        crosses.next = asks.divide.next = (state == SweepState.ORDER) and answer.valid and changes
 
     see_earlier = assign(earlier, lambda: here and sooner)
 
     # Two that follow at the same column are compared there.
     @always_comb
     def settle():
-        take.next = False
-        rivalled.next = False
+        take.next = rivalled.next = False
         if found:
             if earlier or not inherited:
                 take.next = True
@@ -230,10 +222,8 @@ def sweep(
     @always(clk.posedge)
     def keep():
         if begins:
-            inherited.next = False
-            shortened.next = False
-            stop.next = first_stop
-            bound.next = bound_1
+            inherited.next = shortened.next = False
+            stop.next, bound.next = first_stop, bound_1
         elif take:
             inherited.next = True
             heir.word.next = present.word
@@ -255,8 +245,7 @@ def sweep(
 
     @always_comb
     def extend():
-        to_rival.next = rival.distance
-        to_present.next = present.distance
+        to_rival.next, to_present.next = rival.distance, present.distance
         later.next = present.index > rival.index
 
     asked = asks.query.joined(
@@ -269,7 +258,6 @@ def sweep(
     @always_comb
     def request():
         asks.ask.next = ordered or asks_rival
-        asks.query.word.next = asked
-        asks.division.word.next = dividend
+        asks.query.word.next, asks.division.word.next = asked, dividend
 
     return instances()

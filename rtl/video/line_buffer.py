@@ -31,8 +31,7 @@ def line_buffer(clk, write, line_buf_sel, write_offset, pixel_in, read_offset, p
     # The second half starts after the first one's last pixel.
     @always_comb
     def address():
-        write_address.next = write_offset
-        read_address.next = read_offset
+        write_address.next, read_address.next = write_offset, read_offset
         if line_buf_sel:
             write_address.next = (write_offset + groups) % (1 << address_width)
         else:

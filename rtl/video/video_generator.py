@@ -125,23 +125,15 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0)
             vga.blank_n.next = (x >= 0) and (y >= 0)
 
     # In reset sync is at its inactive level, whatever level the ports start from.
-    @always_comb
-    def drive_sync():
-        vga.hs.next = hs
-        vga.vs.next = vs
-        vga.sync_n.next = False
+    drive_sync = assign((vga.hs, vga.vs, vga.sync_n), lambda: (hs, vs, False))
 
     # Black in blanking, when the monitor measures its black level.
     @always_seq(clk.posedge, reset=reset)
     def colour():
         if pixel_end:
             if (x >= 0) and (y >= 0):
-                vga.r.next = pixel.red
-                vga.g.next = pixel.green
-                vga.b.next = pixel.blue
+                vga.r.next, vga.g.next, vga.b.next = pixel.red, pixel.green, pixel.blue
             else:
-                vga.r.next = 0
-                vga.g.next = 0
-                vga.b.next = 0
+                vga.r.next = vga.g.next = vga.b.next = 0
 
     return instances()
