@@ -69,7 +69,7 @@ def rect_setup(
     product_bits = len(start.way_p)
     last = config.rectangles - 1
 
-    reading, asked, at_hand = bit(), bit(), bit()
+    reading, asked, at_hand, at_hand_2 = (bit() for _ in range(SETUP_LATENCY - 1))
     number = unsigned(index_bits(config))
     usable_0, usable = bit(), bit()
     eye_a, plane = signed(DISTANCE_BITS), signed(DISTANCE_BITS)
@@ -83,7 +83,7 @@ def rect_setup(
     to_high_q, measure_high_q = minus(high_q, eye_q, Signed(bound_bits))
 
     number_0, number_1, number_2 = (unsigned(index_bits(config)) for _ in range(3))
-    at_hand_2, usable_2 = bit(), bit()
+    usable_2 = bit()
     axis_2 = unsigned(AXIS_BITS)
     distance_2 = signed(DISTANCE_BITS)
     to_low_p_2, to_high_p_2, to_low_q_2, to_high_q_2 = (signed(bound_bits) for _ in range(4))

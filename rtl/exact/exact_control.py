@@ -45,7 +45,7 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
         done: output flag; all rays have been traced. High until reset_ray_caster.
     """
     in_flight = unsigned(WRITE_AT + 1 + (PATTERN_LATENCY if config.patterns else 0))
-    first, second = Surface(config), Surface(config)
+    first, second = (Surface(config) for _ in range(LATENCY - 1))
     # Unless the scene is fixed, a shadow pass wants the same rectangles as a reflection.
     shadow_pass = ShadowPass(comes_next=None if config.fixed else unconnected(1))
     from_light = bit() if config.light else tied(0, 1)

@@ -62,9 +62,11 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
     ahead_u, ahead_v, inside_u, inside_v, in_mirror_u, in_mirror_v = (bit() for _ in range(6))
     crosses, beyond, in_mirror = bit(), bit(), bit()
 
-    # A number at the end of a name is the stage whose registers hold it.
-    seen_1 = Record({"crosses": 1, "mirror_on_a": 1, "met": 1, "n": distance_bits, "e": slope_bits})
-    seen_2 = Record({"crosses": 1, "met": 1, "n": distance_bits, "e": slope_bits})
+    # A number at the end of a name is the stage whose registers hold it; the last stage holds the outputs.
+    seen_1, seen_2 = (
+        Record({"crosses": 1, "mirror_on_a": int(stage == 1), "met": 1, "n": distance_bits, "e": slope_bits})
+        for stage in range(1, LATENCY)
+    )
 
     of_eye, of_slope, of_signs = (eye.x, eye.y, eye.z), (slope.dx, slope.dy, slope.dz), (signs.dx, signs.dy, signs.dz)
     of_mirror = mirror_on_x, mirror_on_y, mirror_on_z

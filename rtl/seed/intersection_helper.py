@@ -60,8 +60,11 @@ def intersection_helper(
     product = unsigned(product_width)
     forward, step_forward = plus(a, quotient, Signed(position_width + 2))
     backward, step_backward = minus(a, quotient, Signed(position_width + 2))
-    # Flags and distance of the operands, of the division in progress and of the finished quotient.
-    started, loaded, stored = (Record({"distance": position_width, "negative": 1, "towards": 1}) for _ in range(3))
+    # Flags and distance of the operands, of the division in progress and of the finished quotient: the stages except
+    # those of product and value.
+    started, loaded, stored = (
+        Record({"distance": position_width, "negative": 1, "towards": 1}) for _ in range(LOAD_AT + WRITE_AFTER - 1)
+    )
 
     absolute = magnitude(difference, away)
     division = divider(

@@ -8,7 +8,7 @@ from raycaster.hdl.signals import bit, tied, unsigned
 from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.common.records import Rect
-from raycaster.rtl.engine.ray_sequencer import ends_early, ray_sequencer
+from raycaster.rtl.engine.ray_sequencer import EARLY_OUT_AT, ends_early, ray_sequencer
 from raycaster.rtl.seed.intersection_helper import LOAD_AT, WRITE_AFTER
 
 
@@ -19,7 +19,7 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
     A new rectangle starts every `config.divider_steps` cycles: with steps.find_intersection in cycle t,
     steps.load_divider comes in t + `LOAD_AT`, steps.store_quotient `config.divider_steps` cycles later (together with
     the next rectangle's steps.load_divider) and steps.write_z_buf `WRITE_AFTER` cycles after that. The early_out of
-    ray_sequencer comes in t + 2, from the fate.any_towards of t + 1.
+    ray_sequencer comes in t + `EARLY_OUT_AT`, from the fate.any_towards of the cycle before.
 
     Ports that ray_sequencer also has work as described there.
 
@@ -35,7 +35,8 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
         offered: output `Rect`; the rectangle whose quotients were stored last.
         done: output flag; all rays have been traced. High until reset_ray_caster.
     """
-    load_at = LOAD_AT - 1  # bit i of in_flight comes i + 1 cycles after find_intersection
+    # Bit i of in_flight comes i + 1 cycles after find_intersection.
+    load_at, dropped = LOAD_AT - 1, EARLY_OUT_AT - 1
     store_at = load_at + config.divider_steps
     write_at = store_at + WRITE_AFTER
 
@@ -68,6 +69,6 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
         # The combined flag of all units is registered here; see ray_sequencer.
         register_towards = register(clk, none_towards, lambda: not fate.any_towards)
 
-        end_early = assign(early_out, lambda: in_flight[load_at] and none_towards)
+        end_early = assign(early_out, lambda: in_flight[dropped] and none_towards)
 
     return instances()

@@ -35,7 +35,7 @@ def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configur
     kept = line_bits(config)
     product_bits, growth_product_bits = factor_bits + slope_bits, factor_bits + growth_bits
 
-    asked_1, asked_2, asked_3, asked_4 = (bit() for _ in range(4))
+    asked_1, asked_2, asked_3, asked_4 = (bit() for _ in range(LATENCY - 1))
     query_1, query_2, query_3 = (Query(config) for _ in range(3))
     opposite_1, opposite_2 = signed(factor_bits + 1), signed(factor_bits + 1)
     factor_1_2, factor_2_2, factor_1_3, factor_2_3 = (signed(factor_bits) for _ in range(4))

@@ -18,7 +18,7 @@ from raycaster.rtl.exact.cell_finder import cell_finder
 from raycaster.rtl.exact.extent_tester import extent_tester
 from raycaster.rtl.exact.hit_component import hit_component
 from raycaster.rtl.exact.nearest_hit import nearest_hit
-from raycaster.rtl.exact.rect_tester import rect_tester
+from raycaster.rtl.exact.rect_tester import LATENCY, rect_tester
 from raycaster.verif.expected import sorted_rect
 from raycaster.verif.random_world import EXTREMES, random_camera, random_rectangles
 
@@ -78,9 +78,6 @@ def test_extent_tester(reflections, leaf_of, random):
     assert seen == {False, True}
     leaf.stimulus += [late, {}]
     leaf.check(settled=2)
-
-
-LATENCY = 3
 
 
 def mirrored_rays(random: np.random.Generator, config: Configuration, count: int):
