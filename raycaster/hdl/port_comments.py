@@ -102,11 +102,10 @@ class Comments:
             value = self._known.get(name)
             for attribute in attributes:
                 value = getattr(value, attribute, None)
-            if (
-                inspect.isfunction(value)
-                and (needed := inspect.signature(value).parameters.keys()) <= self._given.keys()
-            ):
-                value = value(**{name: self._given[name] for name in needed})
+            if inspect.isfunction(value):
+                parameters = inspect.signature(value).parameters.values()
+                if all(one.name in self._given for one in parameters if one.default is one.empty):
+                    value = value(**{one.name: self._given[one.name] for one in parameters if one.name in self._given})
             if not isinstance(value, int) or isinstance(value, bool):
                 return match[1] + match[2]
             return f"{value / 1e6:g} MHz" if match[2] else str(value)

@@ -20,8 +20,8 @@ def row_place(clk, reset, scan, view_run, taken, restart, place, playing):
         taken: unsigned, 2 bits; entries that end in this cycle, 0 while the line is not visible.
         restart: output strobe, before each line of a row: in the second cycle after scan.start_row or after the end of
             a line's visible part.
-        place: unsigned output, `entry_bits` bits; with restart, number of the line's first entry. In the line, number
-            of the entry of the cycle before.
+        place: unsigned output; with restart, number of the line's first entry. In the line, number of the entry of the
+            cycle before.
         playing: output flag; there is a row to show.
     """
     limit = 1 << len(place)

@@ -51,6 +51,14 @@ def test_a_design_is_a_module_per_file(units, tmp_path):
     assert (instances["ray_unit"], instances["line_buffer"], len(given)) == (units, units, 2)
 
 
+def test_comments_have_numbers(tmp_path):
+    """Widths and latencies in comments are numbers, also those of other blocks."""
+    files = write_verilog(configure(screen="tiny", engine="span", bus="uart", baud=9600, units=2), tmp_path / "verilog")
+    comments = "\n".join(re.findall("//.*", "".join(path.read_text() for path in files)))
+    assert "the run at read_place 2 cycles later" in comments and "strobe, at least 9 cycles after" in comments
+    assert not re.findall(r"\b[A-Za-z]+_(?:bits|latency) (?:bits|cycles)|\b[A-Z]+_(?:BITS|CYCLES|LATENCY)\b", comments)
+
+
 @pytest.mark.slow
 def test_any_process_writes_the_same_bytes(tmp_path):
     """MyHDL iterates over Python sets, whose order depends on the hash seed."""
