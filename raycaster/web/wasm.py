@@ -17,7 +17,8 @@ from raycaster.errors import UserError, not_installed
 from raycaster.play.machine import HOST, SIGNS, TOP, MachineSources, machine_sources
 from raycaster.play.machine import MACHINE as MACHINE_HEADER
 from raycaster.registers import address_bits
-from raycaster.rtl.common.widths import column_bits
+from raycaster.rtl.common.widths import pixel_bits
+from raycaster.rtl.span.lists import ListEntry
 from raycaster.runs.tools import TIMEOUT, ToolError, run_program
 from raycaster.sim.simulator import (
     VERILATED_DEFINITIONS,
@@ -139,7 +140,7 @@ def drawing_sources(config: Configuration, build: Path = BUILD) -> MachineSource
                 (directory / name).write_text(text)
         files = [copy if (copy := directory / path.name).exists() else path for path in originals]
     flags = [flag for flag in driven.flags if not flag.startswith("-G")]
-    entry_bits = column_bits(config) + 3 * config.colour_bits
+    entry_bits = len(ListEntry(config.screen_geometry.columns, pixel_bits(config)).word)
     sizes = (
         f"-DADDRESS_BITS={address_bits(*config.map)}", f"-DENTRY_BITS={entry_bits}",
         f"-DROWS={config.screen_geometry.rows}", f"-DCOLOUR_BITS={config.colour_bits}",

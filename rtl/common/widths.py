@@ -94,6 +94,11 @@ def eye_bits(config: Configuration) -> int:
     return ((WORLD_SIZE - 1) * (config.most_reflections + 1)).bit_length() + 1
 
 
+def eye_distance_bits(config: Configuration) -> int:
+    """Width of the distance from a mirrored eye to a plane ahead of it, without sign."""
+    return eye_bits(config) - 1
+
+
 def walk_bits(config: Configuration) -> int:
     """Width of a product of a slope and a distance within the world, with sign: |n D| <= 511 * the steepest slope."""
     return ((WORLD_SIZE - 1) * steepest_slope(config)).bit_length() + 1
@@ -124,12 +129,22 @@ def row_bits(config: Configuration) -> int:
     return bits_for(config.screen_geometry.rows + 1)
 
 
+def end_bits(columns: int) -> int:
+    """Width of a column of a row, or of the column after a run: 0 up to the number of columns."""
+    return bits_for(columns + 1)
+
+
 def column_bits(config: Configuration) -> int:
     """Width of a column of the whole screen, or of the column after a run: 0 up to the number of columns."""
-    return bits_for(config.screen_geometry.columns + 1)
+    return end_bits(config.screen_geometry.columns)
 
 
-def span_slope_bits(config: Configuration) -> int:
+def reached_column_bits(config: Configuration) -> int:
+    """Width of a column as computed from the column offset, which may be one group past the last."""
+    return ((config.groups + 1) * config.units).bit_length()
+
+
+def signed_slope_bits(config: Configuration) -> int:
     """Width of a component of a slope of the screen, with sign."""
     return exact_slope_bits(config) + 1
 
@@ -154,7 +169,7 @@ def step_bits(config: Configuration) -> int:
 
 def operand_bits(config: Configuration) -> int:
     """Width of a slope component in a half-line, with sign: of a ray, or from the light to a surface."""
-    return max(span_slope_bits(config), (light_slope_bits(config) + 1) if config.light else 0)
+    return max(signed_slope_bits(config), (light_slope_bits(config) + 1) if config.light else 0)
 
 
 def operand_growth_bits(config: Configuration) -> int:
@@ -189,7 +204,7 @@ def divisor_bits(config: Configuration) -> int:
     growth = line_growth_bits(config)
     if config.light:
         growth += (2 * (WORLD_SIZE - 1)).bit_length()
-    return max(growth, span_slope_bits(config)) if config.patterns else growth
+    return max(growth, signed_slope_bits(config)) if config.patterns else growth
 
 
 def level_bits(config: Configuration) -> int:
@@ -205,6 +220,16 @@ def weight_bits(config: Configuration) -> int:
 def index_bits(config: Configuration) -> int:
     """Width of the number of a rectangle."""
     return bits_for(config.rectangles)
+
+
+def count_bits(config: Configuration) -> int:
+    """Width of a number of entries of a chain, from none to all rectangles."""
+    return bits_for(config.rectangles + 1)
+
+
+def entry_bits(entries: int) -> int:
+    """Width of the number of an entry of a list, 0 up to one past the last."""
+    return bits_for(entries + 1)
 
 
 def pixel_bits(config: Configuration) -> int:

@@ -7,7 +7,7 @@ from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit, signed, tied, unsigned
 from raycaster.hdl.verbs import assign, register, times
 from raycaster.rtl.common.interfaces import Place, Rects, Vector
-from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, wide_walk_bits
+from raycaster.rtl.common.widths import WIDE_BITS, signed_slope_bits, wide_walk_bits
 from raycaster.rtl.cull.group_tester import group_tester
 from raycaster.rtl.cull.rect_copy import WideRect, rect_copy
 from raycaster.rtl.cull.rect_setup import Facet, Walk, rect_setup
@@ -37,7 +37,7 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
             hits it.
     """
     units, rectangles = config.units, config.rectangles
-    slope_bits = exact_slope_bits(config) + 1
+    slope_bits = signed_slope_bits(config)
     centre_column, horizon_row = config.screen_geometry.centre_column, config.screen_geometry.horizon_row
     last_group, last_rectangle = config.groups - 1, rectangles - 1
     everything = (1 << rectangles) - 1

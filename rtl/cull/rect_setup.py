@@ -8,7 +8,7 @@ from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
 from raycaster.hdl.verbs import assign, minus, register
 from raycaster.rtl.common.by_axis import along_a, along_p, along_q, by_axis
-from raycaster.rtl.common.widths import AXIS_BITS, DISTANCE_BITS, exact_slope_bits, index_bits, walk_bits
+from raycaster.rtl.common.widths import AXIS_BITS, DISTANCE_BITS, index_bits, signed_slope_bits, walk_bits
 from raycaster.rtl.engine.array_multiplier import array_multiplier
 
 SETUP_LATENCY = 5
@@ -64,7 +64,7 @@ def rect_setup(
         growth: output `Walk`; the change of start per column, valid with load.
         start: output `Walk` of the first column; valid with load.
     """
-    slope_bits = exact_slope_bits(config) + 1
+    slope_bits = signed_slope_bits(config)
     bound_bits = len(growth.low_p)
     product_bits = len(start.way_p)
     last = config.rectangles - 1

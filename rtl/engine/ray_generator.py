@@ -7,7 +7,7 @@ from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, unsigned
 from raycaster.hdl.verbs import less, minus, plus, times
 from raycaster.rtl.common.magnitude import magnitude
-from raycaster.rtl.common.widths import row_bits
+from raycaster.rtl.common.widths import reached_column_bits, row_bits
 
 
 @block
@@ -27,14 +27,12 @@ def ray_generator(clk, steps, place, column_base, initial_signs, slope, config: 
             after steps.screen_to_ray.
     """
     slope_bits = len(slope.dx)
-    units = config.units
     view_distance = config.screen_geometry.view_distance
     centre_column = config.screen_geometry.centre_column
     horizon_row = config.screen_geometry.horizon_row
-    # One group past the last is legal: the counter stops there.
-    column_width = (config.groups * units + units).bit_length()
+    column_width = reached_column_bits(config)
 
-    group_start, scale_offset = times(place.column_offset, units, column_width)
+    group_start, scale_offset = times(place.column_offset, config.units, column_width)
     column, add_base = plus(group_start, column_base, column_width)
     dy, centre = minus(column, centre_column, Signed(max(column_width, slope_bits) + 1))
     dz, level = minus(horizon_row, place.row, Signed(max(row_bits(config), slope_bits) + 1))

@@ -8,7 +8,7 @@ from raycaster.hdl.signals import bit, unconnected, unsigned
 from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.interfaces import Slope, Vector
 from raycaster.rtl.common.records import Colour, Signs, Surface
-from raycaster.rtl.common.widths import RGB_BITS, exact_slope_bits, eye_bits, light_slope_bits
+from raycaster.rtl.common.widths import RGB_BITS, exact_slope_bits, eye_bits, eye_distance_bits, light_slope_bits
 from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.pattern_colour import pattern_colour
 from raycaster.rtl.engine.ray_generator import ray_generator
@@ -51,7 +51,7 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
     found_at_mirror = bit() if mirror.has("met_x") else unconnected(1)
     hit, found = bit(), bit()
     missed = bit() if config.culling or config.materials or config.light else unconnected(1)
-    numerator, found_distance = (unsigned(eye_bits(config) - 1) for _ in range(2))
+    numerator, found_distance = (unsigned(eye_distance_bits(config)) for _ in range(2))
     slope_bits = exact_slope_bits(config)
     denominator = unsigned(slope_bits)
     found_slope = unsigned(slope_bits) if config.varied else unconnected(slope_bits)

@@ -8,7 +8,7 @@ from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
 from raycaster.hdl.verbs import assign, minus
 from raycaster.rtl.common.by_axis import by_axis
-from raycaster.rtl.common.widths import AXIS_BITS, eye_bits
+from raycaster.rtl.common.widths import AXIS_BITS, eye_distance_bits
 
 
 class Mirror(Record):
@@ -19,7 +19,7 @@ class Mirror(Record):
 
     def __init__(self, config: Configuration, distance_bits: int | None = None):
         met = dict.fromkeys(("met_x", "met_y", "met_z"), int(config.most_reflections > 1))
-        super().__init__({"active": 1, "axis": AXIS_BITS, "distance": distance_bits or eye_bits(config) - 1} | met)
+        super().__init__({"active": 1, "axis": AXIS_BITS, "distance": distance_bits or eye_distance_bits(config)} | met)
 
 
 @block

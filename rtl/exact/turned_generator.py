@@ -6,7 +6,7 @@ from myhdl import block, instances
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit
 from raycaster.hdl.verbs import assign, minus, times
-from raycaster.rtl.common.widths import row_bits
+from raycaster.rtl.common.widths import reached_column_bits, row_bits
 from raycaster.rtl.exact.slope_component import slope_component
 
 
@@ -29,12 +29,11 @@ def turned_generator(
         slope: output `Slope`, the magnitudes, wide enough for the steepest slope on the screen; valid from the cycle
             after steps.screen_to_ray.
     """
-    units = config.units
     screen = config.screen_geometry
     centre_column, horizon_row = screen.centre_column, screen.horizon_row
-    column_width = (config.groups * units + units).bit_length()
+    column_width = reached_column_bits(config)
 
-    group_start, scale_offset = times(place.column_offset, units, column_width)
+    group_start, scale_offset = times(place.column_offset, config.units, column_width)
     column, centre = minus(group_start, centre_column, Signed(column_width + 1))
     row, level = minus(horizon_row, place.row, Signed(row_bits(config) + 1))
     negative_x, negative_y, negative_z = bit(), bit(), bit()

@@ -5,9 +5,10 @@ from myhdl import always_comb, block, instances
 
 from raycaster.hdl.signals import bit, bits_for, side_by_side, tied, unconnected, unsigned
 from raycaster.hdl.verbs import assign, register
+from raycaster.rtl.common.widths import entry_bits
 from raycaster.rtl.span.frame_switch import frame_switch
 from raycaster.rtl.span.list_player import list_player
-from raycaster.rtl.span.lists import ListEntry, entry_bits
+from raycaster.rtl.span.lists import ListEntry
 from raycaster.rtl.span.row_collector import row_collector
 from raycaster.rtl.span.row_dealer import row_dealer
 from raycaster.rtl.span.run_memory import BANK_PLACES, LARGE_BANK

@@ -9,7 +9,14 @@ from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.by_axis import along_a, along_u, along_v, by_axis
 from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.records import Rect
-from raycaster.rtl.common.widths import AXIS_BITS, column_bits, eye_bits, index_bits, line_factor_bits
+from raycaster.rtl.common.widths import (
+    AXIS_BITS,
+    column_bits,
+    eye_bits,
+    eye_distance_bits,
+    index_bits,
+    line_factor_bits,
+)
 from raycaster.rtl.span.mirror_side import mirror_side
 from raycaster.rtl.span.records import AHEAD, BEYOND, NUMBER_BITS, U_HIGH, U_LOW, V_HIGH, V_LOW
 
@@ -70,7 +77,7 @@ def half_lines(
     may_vanish = bit()
 
     position, eye_a, n = signed(far_bits), signed(far_bits), signed(far_bits + 1)
-    distance = unsigned(far_bits - 1)
+    distance = unsigned(eye_distance_bits(config))
     flipped, fore_left_a, fore_right_a, aft_left_a, aft_right_a = (bit() for _ in range(5))
     point, back, apart, ahead_left, ahead_right, skip, tested_ahead, ready, accept = (bit() for _ in range(9))
     weighed_rect, weighed_entry = Rect(config), entry.twin()

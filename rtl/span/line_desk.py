@@ -22,7 +22,7 @@ def line_desk(
         sweep_asks: `Asks` of `sweep`.
         corner_asks: `Asks` of `corner_finder`; divide and division are not read.
         surface_asks: `Asks` of `surfaces`.
-        slope: `Vector` of `span_slope_bits` bits; the slope of column 0, constant while anything is evaluated.
+        slope: `Vector` of `signed_slope_bits` bits; the slope of column 0, constant while anything is evaluated.
         step: `Vector`, the slope's change from column to column; see `line_eval`.
         aim: `Aim`; see `line_eval`.
         answer: output `Answer`, to all of them.

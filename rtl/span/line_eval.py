@@ -25,7 +25,7 @@ def line_eval(clk, reset, ask, query, slope, step, aim, answer, config: Configur
         reset: flag; synchronous reset, after which no answer is under way.
         ask: strobe; evaluate the query of this cycle.
         query: `Query`; read with ask.
-        slope: `Vector` of `span_slope_bits` bits; the slope of column 0, constant while anything is evaluated.
+        slope: `Vector` of `signed_slope_bits` bits; the slope of column 0, constant while anything is evaluated.
         step: `Vector` of `step_bits` bits; the slope's change from column to column, constant like slope. Only read
             with `config.turn`; otherwise it is (0, 1, 0).
         aim: `Aim`; read with `config.light`, constant while lines from the light are evaluated.

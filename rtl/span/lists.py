@@ -2,17 +2,7 @@
 """Entries of the lists that units draw and the monitor shows."""
 
 from raycaster.hdl.records import Record
-from raycaster.hdl.signals import bits_for
-
-
-def end_bits(columns: int) -> int:
-    """Width of the column after a run's last, 0 up to the number of columns."""
-    return bits_for(columns + 1)
-
-
-def entry_bits(entries: int) -> int:
-    """Width of the number of an entry of a list, 0 up to one past the last."""
-    return bits_for(entries + 1)
+from raycaster.rtl.common.widths import end_bits
 
 
 class ListEntry(Record):

@@ -7,7 +7,7 @@ from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.by_axis import by_axis
-from raycaster.rtl.common.widths import AXIS_BITS, column_bits, span_slope_bits, step_bits
+from raycaster.rtl.common.widths import AXIS_BITS, column_bits, signed_slope_bits, step_bits
 
 
 @block
@@ -21,7 +21,7 @@ def operand_ends(
         from_light: flag, read with `config.light`; all three come from aim instead, on axis 3 those of e.
         left: unsigned, `column_bits` bits.
         right: unsigned, `column_bits` bits.
-        slope: `Vector` of `span_slope_bits` bits; the slope of column 0, constant while anything is computed.
+        slope: `Vector` of `signed_slope_bits` bits; the slope of column 0, constant while anything is computed.
         step: `Vector` of `step_bits` bits; the slope's change from column to column, constant like slope. Only read
             with `config.turn`; otherwise it is (0, 1, 0).
         aim: `Aim` of the span whose ends the columns are; read with `config.light`, constant like slope.
@@ -29,7 +29,7 @@ def operand_ends(
         at_right: signed output, `operand_bits` bits; the component at the column right.
         growth: signed output, `operand_growth_bits` bits; its change from column to column.
     """
-    slope_bits, growth_bits, columns = span_slope_bits(config), step_bits(config), column_bits(config)
+    slope_bits, growth_bits, columns = signed_slope_bits(config), step_bits(config), column_bits(config)
     # A column beyond the last, where all is don't care, may exceed the steepest slope.
     bits = max(slope_bits, columns + growth_bits) + 1
 

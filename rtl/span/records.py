@@ -14,8 +14,10 @@ from raycaster.rtl.common.widths import (
     RGB_BITS,
     SMALLEST_CELL_BITS,
     column_bits,
+    count_bits,
     divisor_bits,
     eye_bits,
+    eye_distance_bits,
     index_bits,
     line_bits,
     line_factor_bits,
@@ -48,7 +50,7 @@ class Chain(Record):
             {"start": columns, "stop": columns}
             | dict.fromkeys(("eye_x", "eye_y", "eye_z"), Signed(eye_bits(config)))
             | dict.fromkeys(("back_x", "back_y", "back_z", "mirrored"), some)
-            | {"axis": AXIS_BITS * some, "back": some, "distance": (eye_bits(config) - 1) * some}
+            | {"axis": AXIS_BITS * some, "back": some, "distance": eye_distance_bits(config) * some}
             | dict.fromkeys(("met_x", "met_y", "met_z"), some)
             | {"weight": weight_bits(config) * some}
         )
@@ -63,7 +65,7 @@ class Entry(Record):
     def __init__(self, config: Configuration):
         columns = column_bits(config)
         super().__init__(
-            {"index": index_bits(config), "axis": AXIS_BITS, "back": 1, "distance": eye_bits(config) - 1}
+            {"index": index_bits(config), "axis": AXIS_BITS, "back": 1, "distance": eye_distance_bits(config)}
             | {"start": columns, "stop": columns}
         )
 
@@ -107,10 +109,9 @@ class Grid(Record):
     """
 
     def __init__(self, config: Configuration):
-        far_bits = eye_bits(config)
         super().__init__(
-            {"kind": KIND_BITS, "cell": CELL_BITS, "axis": AXIS_BITS, "back": 1, "distance": far_bits - 1}
-            | dict.fromkeys(("eye_u", "eye_v"), Signed(far_bits))
+            {"kind": KIND_BITS, "cell": CELL_BITS, "axis": AXIS_BITS, "back": 1, "distance": eye_distance_bits(config)}
+            | dict.fromkeys(("eye_u", "eye_v"), Signed(eye_bits(config)))
             | {"back_u": 1, "back_v": 1, "stop": column_bits(config)}
         )
 
@@ -135,11 +136,6 @@ class Shadows(Record):
     def __init__(self, config: Configuration):
         columns = column_bits(config)
         super().__init__({"dark": 1, "until": columns, "count": count_bits(config), "stop": columns})
-
-
-def count_bits(config: Configuration) -> int:
-    """Width of a number of entries, from none to all rectangles."""
-    return config.rectangles.bit_length()
 
 
 class Query(Record):

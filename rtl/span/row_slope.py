@@ -6,7 +6,7 @@ from myhdl import always, block, instances
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit
 from raycaster.hdl.verbs import minus, register
-from raycaster.rtl.common.widths import span_slope_bits
+from raycaster.rtl.common.widths import signed_slope_bits
 from raycaster.rtl.span.slope_start import slope_start
 
 
@@ -21,11 +21,11 @@ def row_slope(clk, first_row, next_row, camera, slope, config: Configuration):
         first_row: strobe; the rows begin again with row 0.
         next_row: strobe; the row below. Not in the cycle after first_row, nor with it.
         camera: `Camera`; only its basis is read, constant from the cycle before first_row to the last next_row.
-        slope: output `Vector` of `span_slope_bits` bits; valid from the second cycle after first_row, and from the
+        slope: output `Vector` of `signed_slope_bits` bits; valid from the second cycle after first_row, and from the
             cycle after next_row.
     """
     screen = config.screen_geometry
-    bits = span_slope_bits(config)
+    bits = signed_slope_bits(config)
 
     if camera.has("forward_x"):
         components = [

@@ -11,6 +11,7 @@ from raycaster.rtl.common.widths import (
     AXIS_BITS,
     column_bits,
     eye_bits,
+    eye_distance_bits,
     line_factor_bits,
     operand_bits,
     operand_growth_bits,
@@ -59,7 +60,7 @@ def shadow_finder(
     offset, to_plane, factor_1, factor_2 = (signed(factor_bits) for _ in range(4))
     last = unsigned(width)
     left, right, growth = signed(bits), signed(bits), signed(growth_bits)
-    none, no_axis, no_distance = tied(0, 1), tied(0, AXIS_BITS), tied(0, far_bits - 1)
+    none, no_axis, no_distance = tied(0, 1), tied(0, AXIS_BITS), tied(0, eye_distance_bits(config))
     no_weight = tied(0, weight_bits(config))
 
     @always_comb

@@ -6,7 +6,7 @@ from myhdl import Signal, always, always_comb, block, enum, instances
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, tied, unsigned
 from raycaster.hdl.verbs import assign, register
-from raycaster.rtl.common.widths import AXIS_BITS, MIRROR_BITS, column_bits, eye_bits, weight_bits
+from raycaster.rtl.common.widths import AXIS_BITS, MIRROR_BITS, column_bits, eye_bits, eye_distance_bits, weight_bits
 from raycaster.rtl.span.quarters_of import quarters_of
 from raycaster.rtl.span.records import Chain
 
@@ -77,7 +77,7 @@ def span_control(
     weight, first_weight, passed = (unsigned(weight_width) for _ in range(3))
     own = unsigned(MIRROR_BITS)
     mirrored = unsigned(MIRROR_BITS) if rect.has("mirror") else tied(2, MIRROR_BITS)
-    no_column, no_axis, no_distance = tied(0, width), tied(0, AXIS_BITS), tied(0, eye_bits(config) - 1)
+    no_column, no_axis, no_distance = tied(0, width), tied(0, AXIS_BITS), tied(0, eye_distance_bits(config))
     all_columns = tied(columns, width)
     eye_x, eye_y, eye_z = (signed(eye_bits(config)) for _ in range(3))
 

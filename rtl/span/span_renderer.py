@@ -8,7 +8,7 @@ from raycaster.hdl.signals import bit, side_by_side, tied, unsigned
 from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.interfaces import Picture, Rects, Scan, Vector
 from raycaster.rtl.common.records import Camera, Pixel
-from raycaster.rtl.common.widths import index_bits, pixel_bits, span_slope_bits
+from raycaster.rtl.common.widths import index_bits, pixel_bits, signed_slope_bits
 from raycaster.rtl.span.frame_list import frame_list
 from raycaster.rtl.span.lists import ListEntry
 from raycaster.rtl.span.records import Run
@@ -39,7 +39,7 @@ def span_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
     one_clock = screen.clocks_per_pixel == 1
 
     scan, shown = Scan(start_screen=progress.start_screen), Pixel(config.port_bits)
-    slope = Vector(span_slope_bits(config))
+    slope = Vector(signed_slope_bits(config))
     reset_units, stop, first_row, next_row = (bit() for _ in range(4))
     start, ready = unsigned(units), unsigned(units)
     dones = [bit() for _ in range(units)]

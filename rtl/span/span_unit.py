@@ -10,9 +10,10 @@ from raycaster.rtl.common.interfaces import Rects, Vector
 from raycaster.rtl.common.widths import (
     RGB_BITS,
     column_bits,
+    count_bits,
     index_bits,
     level_bits,
-    span_slope_bits,
+    signed_slope_bits,
     step_bits,
     weight_bits,
 )
@@ -22,7 +23,7 @@ from raycaster.rtl.span.entry_table import entry_table
 from raycaster.rtl.span.fold import fold
 from raycaster.rtl.span.line_desk import line_desk
 from raycaster.rtl.span.painter import painter
-from raycaster.rtl.span.records import Aim, Answer, Asks, Chain, Entry, Frame, Paint, Run, count_bits
+from raycaster.rtl.span.records import Aim, Answer, Asks, Chain, Entry, Frame, Paint, Run
 from raycaster.rtl.span.run_joiner import run_joiner
 from raycaster.rtl.span.set_up import set_up
 from raycaster.rtl.span.span_control import span_control
@@ -41,7 +42,7 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
     Args:
         reset: synchronous, active high; ends the row.
         start: strobe; draws a row. Only after reset, and from the cycle of done on.
-        slope: `Vector` of `span_slope_bits` bits; the slope of column 0 of that row, read with start.
+        slope: `Vector` of `signed_slope_bits` bits; the slope of column 0 of that row, read with start.
         rects: `Rects`; index and fetch are outputs. All others are constant from start to done.
         camera: `Camera`; constant from start to done. If it turns, only right of its basis is read.
         picture: `Picture`; reflections and background are read, constant from start to done.
@@ -51,7 +52,7 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
     """
     width, mirrors = column_bits(config), config.most_reflections > 0
 
-    first_slope, step, answer = Vector(span_slope_bits(config)), Vector(step_bits(config)), Answer(config)
+    first_slope, step, answer = Vector(signed_slope_bits(config)), Vector(step_bits(config)), Answer(config)
     chain, winner, heir, swept_heir, entry, tested = Chain(config), *(Entry(config) for _ in range(5))
     set_up_asks, sweep_asks, corner_asks = Asks(config), Asks(config), Asks(config, asks=mirrors, divides=False)
     surface_asks = Asks(config, asks=config.varied, divides=config.patterns)

@@ -7,8 +7,8 @@ from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.signals import bit, tied, unsigned
 from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.by_axis import along_a, by_axis
-from raycaster.rtl.common.widths import column_bits, level_bits
-from raycaster.rtl.span.records import Shadows, count_bits
+from raycaster.rtl.common.widths import column_bits, count_bits, level_bits
+from raycaster.rtl.span.records import Shadows
 from raycaster.rtl.span.shadow_finder import shadow_finder
 from raycaster.rtl.span.shadow_scan import shadow_scan
 

@@ -19,10 +19,10 @@ from raycaster.golden.spans import row_slope as golden_slope
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.hdl.signals import bit, tied, unconnected, unsigned
 from raycaster.rtl.common.interfaces import Rects, Vector
-from raycaster.rtl.common.widths import index_bits, level_bits, span_slope_bits
+from raycaster.rtl.common.widths import count_bits, index_bits, level_bits, signed_slope_bits
 from raycaster.rtl.span.entry_table import entry_table
 from raycaster.rtl.span.line_desk import line_desk
-from raycaster.rtl.span.records import Aim, Answer, Asks, Entry, count_bits
+from raycaster.rtl.span.records import Aim, Answer, Asks, Entry
 from raycaster.rtl.span.row_slope import row_slope
 from raycaster.rtl.span.set_up import set_up
 from raycaster.rtl.span.span_unit import span_unit
@@ -83,7 +83,7 @@ def frame_bench(
 
     The ports are those of `stored_rects`, `row_slope` and `span_unit`; the unit's run.ready is an input.
     """
-    rects, slope = Rects(config), Vector(span_slope_bits(config))
+    rects, slope = Rects(config), Vector(signed_slope_bits(config))
     table = stored_rects(clk=clk, store=store, number=number, stored=stored, usable=usable, rects=rects, config=config)
     begun, begins, start = bit(), bit(), bit()
     camera_slope = row_slope(clk=clk, first_row=first_row, next_row=start, camera=camera, slope=slope, config=config)

@@ -16,7 +16,7 @@ from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.hdl.signals import Signed
 from raycaster.rtl.common.interfaces import Rects, Vector
 from raycaster.rtl.common.records import Point
-from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, wide_walk_bits
+from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, signed_slope_bits, wide_walk_bits
 from raycaster.rtl.cull.group_culler import group_culler
 from raycaster.rtl.cull.group_tester import group_tester
 from raycaster.rtl.cull.rect_copy import WideRect, rect_copy
@@ -149,7 +149,7 @@ def test_rect_setup(config, leaf_of, random):
     count, slopes, margin = config.rectangles, primary_slopes(config.screen_geometry), int(random.integers(2))
     ports = {"camera": Point, "facet": lambda: Facet(config), "growth": lambda: Walk(WIDE_BITS), "load": count}
     ports |= {"start": lambda: Walk(wide_walk_bits(config)), "rects": lambda: Rects(config, rect=WideRect())}
-    leaf = leaf_of(rect_setup, config, slope=lambda: Vector(exact_slope_bits(config) + 1), **ports)
+    leaf = leaf_of(rect_setup, config, slope=lambda: Vector(signed_slope_bits(config)), **ports)
     leaf.stimulus += [{"reset": 1}] * 2
     for line in range(12):
         table = flat_table(random, count)
@@ -190,7 +190,7 @@ def test_rect_setup(config, leaf_of, random):
 @culling_designs
 def test_group_tester_at_its_limits(config, leaf_of, random):
     """Any products, with each comparison decided by its last bit, another single bit, or the sign."""
-    slopes_of = dict.fromkeys(("column_slope", "row_slope"), Signed(exact_slope_bits(config) + 1))
+    slopes_of = dict.fromkeys(("column_slope", "row_slope"), Signed(signed_slope_bits(config)))
     ports = {"facet": lambda: Facet(config), "growth": lambda: Walk(WIDE_BITS)}
     ports |= {"start": lambda: Walk(wide_walk_bits(config)), "load": config.rectangles}
     leaf = leaf_of(group_tester, config, **ports, **slopes_of)

@@ -23,9 +23,10 @@ from vectors import by, named
 
 from raycaster.hdl.signals import bit, bits_for, unsigned
 from raycaster.rtl.common.interfaces import FrameEvents, Scan
+from raycaster.rtl.common.widths import entry_bits
 from raycaster.rtl.span.frame_list import frame_list
 from raycaster.rtl.span.frame_switch import frame_switch
-from raycaster.rtl.span.lists import ListEntry, entry_bits
+from raycaster.rtl.span.lists import ListEntry
 from raycaster.rtl.span.row_collector import row_collector
 from raycaster.rtl.span.row_dealer import row_dealer
 from raycaster.sim.register_model import Switch

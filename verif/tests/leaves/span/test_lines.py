@@ -13,7 +13,7 @@ from raycaster.rtl.common.widths import (
     divisor_bits,
     furthest,
     line_bits,
-    span_slope_bits,
+    signed_slope_bits,
     steepest_slope,
     step_bits,
 )
@@ -47,7 +47,7 @@ def test_row_slope(options, leaf_of, random):
 
 def test_slope_start(leaf_of, random):
     config = span_config(screen="tiny", turn=True)
-    bits = {"forward": Signed(10), "right": Signed(10), "up": Signed(10), "component": Signed(span_slope_bits(config))}
+    bits = dict.fromkeys(("forward", "right", "up"), Signed(10)) | {"component": Signed(signed_slope_bits(config))}
     leaf, screen = leaf_of(slope_start, config, **bits), config.screen_geometry
     for _ in range(8):
         forward, right, up = random.choice([-512, 511, *random.integers(-512, 512, 3)], 3).tolist()
@@ -134,7 +134,7 @@ def test_line_eval(options, leaf_of, random):
 def test_operand_ends(turn, leaf_of, random):
     config = span_config(turn=turn)
     columns = config.screen_geometry.columns
-    ends = {"at_left": span_slope_bits(config), "at_right": span_slope_bits(config), "growth": step_bits(config)}
+    ends = {"at_left": signed_slope_bits(config), "at_right": signed_slope_bits(config), "growth": step_bits(config)}
     leaf = leaf_of(operand_ends, config, axis=2, **{name: Signed(width) for name, width in ends.items()})
     for _ in range(leaf.some(150)):
         slope, step = any_slope(random, config)

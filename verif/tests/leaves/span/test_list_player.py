@@ -9,8 +9,9 @@ from vectors import by, named
 
 from raycaster.rtl.common.interfaces import Scan, Vga
 from raycaster.rtl.common.records import Pixel
+from raycaster.rtl.common.widths import entry_bits
 from raycaster.rtl.span.list_player import list_player
-from raycaster.rtl.span.lists import ListEntry, entry_bits
+from raycaster.rtl.span.lists import ListEntry
 from raycaster.rtl.span.pair_player import pair_player
 from raycaster.rtl.span.pixel_player import pixel_player
 from raycaster.rtl.span.row_place import row_place

@@ -11,10 +11,9 @@ from span_vectors import NOTHING, chain_bench, span_config
 from vectors import by, by_axis, named
 
 from raycaster.golden.spans import Chain, Drawing, Entry, Line, Rect, SpanModel
-from raycaster.rtl.common.widths import eye_bits
+from raycaster.rtl.common.widths import count_bits, eye_bits
 from raycaster.rtl.span.entry_table import entry_table
 from raycaster.rtl.span.records import Entry as EntryRecord
-from raycaster.rtl.span.records import count_bits
 
 COLUMNS = 64
 
