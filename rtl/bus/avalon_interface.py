@@ -7,6 +7,7 @@ from raycaster.configuration import FEATURES, Configuration
 from raycaster.hdl.signals import bit, tied, unsigned
 from raycaster.hdl.verbs import assign
 from raycaster.registers import register_map
+from raycaster.rtl.common.interfaces import SceneBus
 from raycaster.rtl.common.widths import CYCLE_BITS, RGB_BITS, WORD_BITS
 from raycaster.rtl.scene.scene_word import scene_word
 
@@ -54,7 +55,7 @@ def table_word(config: Configuration) -> int:
 
 @block
 def avalon_interface(
-    clk, reset, avs_s0, irq, bus, camera_readback, rect_readback, bad_rectangle, picture, progress,
+    clk, reset, avs_s0, irq, bus: SceneBus, camera_readback, rect_readback, bad_rectangle, picture, progress,
     config: Configuration,
 ):  # fmt: skip
     """Hold the registers and give access to the scene memories, as an Avalon-MM agent.

@@ -4,6 +4,7 @@
 from myhdl import always, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
+from raycaster.hdl.internals import SignalType
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
 from raycaster.hdl.verbs import assign, minus, register
@@ -39,7 +40,7 @@ class Walk(Record):
 
 @block
 def rect_setup(
-    clk, reset, start_line, rects, camera, slope, load, facet, growth, start, config: Configuration
+    clk, reset, start_line, rects, camera, slope, load: SignalType, facet, growth, start, config: Configuration
 ):  # fmt: skip
     """Fetch one rectangle per cycle after start_line, and compute the products from which a row starts.
 

@@ -20,6 +20,7 @@ def rect_rom(clk, rects, config: Configuration):
             engine reads it.
         config: the design. config.fixed holds the rectangles.
     """
+    assert config.fixed
     table = tuple(rects.rect.pack(vars(rectangle)) for rectangle in config.fixed.rectangles)
     width = len(rects.rect.word)
     varying, same = tied(varying_bits(table), width), tied(table[0] & ~varying_bits(table), width)

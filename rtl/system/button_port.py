@@ -3,13 +3,14 @@
 
 from myhdl import always_comb, block, instances
 
+from raycaster.hdl.internals import SignalType
 from raycaster.hdl.signals import unsigned
 from raycaster.memory_map import BUTTON_NAMES, INTERRUPT_BIT
 from raycaster.rtl.common.synchroniser import synchroniser
 
 
 @block
-def button_port(clk, reset, buttons, irq, word):
+def button_port(clk, reset, buttons, irq, word: SignalType):
     """Join the buttons and the ray tracer's interrupt into the word that the processor reads.
 
     Args:

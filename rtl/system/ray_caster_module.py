@@ -39,14 +39,15 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         uart: `UartPort`, of this block.
     """
     fixed, camera_fixed = config.fixed, bool(config.fixed and config.fixed.camera)
-    reflections, background, usable = None, None, None
-    if camera_fixed:
+    reflections, background, camera_fields, usable = None, None, None, None
+    if fixed and fixed.background is not None:  # and so is the camera
         reflections, background = tied(config.most_reflections, REFLECTION_BITS), tied(fixed.background, RGB_BITS)
+        camera_fields = fixed.camera_fields
     if fixed:
         usable = tied((1 << config.rectangles) - 1, unsigned(config.rectangles))
     bus = SceneBus(address_bits(*config.map), is_read=config.facts.whole_frames or not camera_fixed)
     picture = Picture(reflections=reflections, background=background)
-    camera = Camera(config, fixed=fixed.camera_fields if camera_fixed else None)
+    camera = Camera(config, fixed=camera_fields)
     rects, progress = Rects(config, usable=usable), Progress(config)
     camera_readback, rect_readback = unsigned(WORD_BITS), unsigned(WORD_BITS)
     bad_rectangle = bit()

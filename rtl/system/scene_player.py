@@ -8,6 +8,7 @@ from raycaster.hdl.signals import bit, bits_for, tied, unsigned
 from raycaster.hdl.verbs import assign
 from raycaster.program import scene_words
 from raycaster.registers import register_map
+from raycaster.rtl.common.interfaces import AvalonPort
 from raycaster.rtl.common.synchroniser import synchroniser
 from raycaster.rtl.common.widths import LANES, WORD_BITS
 from raycaster.rtl.system.camera_axis import camera_axis
@@ -30,7 +31,7 @@ def player_program(scene: Scene, config: Configuration) -> tuple[list[tuple[int,
 
 
 @block
-def scene_player(clk, reset, buttons, irq, avm_m0, config: Configuration, scene: Scene):
+def scene_player(clk, reset, buttons, irq, avm_m0: AvalonPort, config: Configuration, scene: Scene):
     """Load a scene after reset, then a camera at each StartScreen interrupt, as an Avalon-MM host that only writes.
 
     A camera written at one StartScreen is shown from the next on.

@@ -14,7 +14,9 @@ import pytest
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.design.decide import configure
+from raycaster.hdl.internals import SignalType
 from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.records import Interface
 from raycaster.hdl.signals import Signed, bit, reset_signal, signed, tied, unsigned
 from raycaster.registers import address_bits
 from raycaster.rtl.common import interfaces, records, widths
@@ -90,6 +92,13 @@ SPAN_PORTS: dict[str, int | Callable[[Any], Any]] = PORTS | {
 """Ports of the span engine's blocks."""
 
 
+def is_port(parameter: inspect.Parameter) -> bool:
+    """Return True unless a block's argument has a default, or a type that is neither a signal's nor an interface's."""
+    kind = SignalType if parameter.annotation is parameter.empty else parameter.annotation
+    port = isinstance(kind, type) and issubclass(kind, (SignalType, Interface))
+    return port and parameter.default is parameter.empty
+
+
 class Bench(Leaf):
     """A block with new signals at its ports, its stimulus, and the outputs that are expected.
 
@@ -98,7 +107,7 @@ class Bench(Leaf):
         directory: scratch space for the Verilog.
         config: the design, which sizes the ports of `PORTS`, or of `SPAN_PORTS` in a design of the span engine.
         given: by name, a port's width (`Signed` for two's complement) or a function that makes its signal; an argument
-            with a type or a default is no port and is passed on. A port that is neither here nor there is a bit.
+            that `is_port` excludes is passed on. A port that is neither here nor there is a bit.
     """
 
     few: ClassVar[bool] = False
@@ -114,7 +123,7 @@ class Bench(Leaf):
                 return config
             if name in ("control", "unit") and config is not None:
                 return engine_of(config).blocks[name == "unit"]
-            if parameter.annotation is not parameter.empty or parameter.default is not parameter.empty:
+            if not is_port(parameter):
                 return given[name]
             known = SPAN_PORTS if config is not None and config.facts.whole_frames else PORTS
             made = given.get(name, known.get(name, lambda _: bit()))
