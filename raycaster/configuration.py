@@ -121,7 +121,8 @@ class Options:
         12,
         ge=1,
         le=MOST_RECTANGLES,
-        description=f"capacity of the scene memory, in rectangles: up to 32, or {MOST_RECTANGLES} (span)",
+        description=f"capacity of the scene memory, in rectangles: up to {Facts.rectangles}, or {MOST_RECTANGLES} "
+        "(span)",
     )
     reflections: Whole = Field(
         1,

@@ -6,6 +6,12 @@ from raycaster.hdl.signals import bits_for
 from raycaster.registers import register_map
 from raycaster.scene import CELLS
 
+
+def field_bits(register: str, field: str) -> int:
+    """Width of a register's field, the same in all designs."""
+    return register_map(1)[register].fields[field].width
+
+
 SLOPE_BITS = 9
 """Magnitude of a slope; the sign is stored separately."""
 
@@ -19,19 +25,19 @@ AXIS_BITS = 2
 RGB_BITS = 3 * CHANNEL_BITS
 """A whole colour; the configuration's `colour_bits` is one channel of the VGA output."""
 
-BASIS_BITS = 10
+BASIS_BITS = field_bits("forward", "x")
 """A component of the turned camera's basis, times 256, with sign."""
 
-MIRROR_BITS = 3
+MIRROR_BITS = field_bits("rectangle[0].surface", "mirror")
 """The share that a rectangle mirrors, in quarters: 0..4."""
 
-SHADE_BITS = 2
+SHADE_BITS = field_bits("light", "shade")
 """The quarters of a colour that remain in the dark: 0..3."""
 
-REFLECTION_BITS = 3
+REFLECTION_BITS = field_bits("control", "reflections")
 """The number of reflections that a scene asks for."""
 
-KIND_BITS, CELL_BITS = (register_map(1)["rectangle[0].pattern"].fields[name].width for name in ("kind", "cell"))
+KIND_BITS, CELL_BITS = (field_bits("rectangle[0].pattern", name) for name in ("kind", "cell"))
 """A pattern's kind, and log2 of its cell size in world units, minus three."""
 
 SMALLEST_CELL_BITS = CELLS[0].bit_length() - 1
@@ -41,7 +47,7 @@ WORD_BITS = 32
 LANES = 4
 """Bytes of a word, each with its own enable."""
 
-CYCLE_BITS = 16
+CYCLE_BITS = field_bits("cycles", "row")
 """Width of the counters that measure the row budget."""
 
 
