@@ -43,6 +43,9 @@ KIND_BITS, CELL_BITS = (field_bits("rectangle[0].pattern", name) for name in ("k
 SMALLEST_CELL_BITS = CELLS[0].bit_length() - 1
 """log2 of the size of a pattern's smallest cell, in world units."""
 
+PLACE_BITS = COORDINATE_BITS - SMALLEST_CELL_BITS
+"""The number of a pattern's cell along an axis."""
+
 WORD_BITS = 32
 LANES = 4
 """Bytes of a word, each with its own enable."""

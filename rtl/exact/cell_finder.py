@@ -6,15 +6,12 @@ from myhdl import always, always_comb, block, instances
 from raycaster.configuration import COORDINATE_BITS
 from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.hdl.verbs import register
-from raycaster.rtl.common.widths import SMALLEST_CELL_BITS
+from raycaster.rtl.common.widths import PLACE_BITS, SMALLEST_CELL_BITS
 from raycaster.rtl.engine.divider_step import divider_step
 from raycaster.rtl.exact.hit_component import hit_component
 
-DIGITS = COORDINATE_BITS - SMALLEST_CELL_BITS
-"""Quotient bits of a division."""
-
-DIVISION_CYCLES = DIGITS // 2
-"""Cycles of a division, with two bits per cycle."""
+DIVISION_CYCLES = PLACE_BITS // 2
+"""Cycles of a division, with two quotient bits per cycle."""
 
 
 @block
@@ -51,7 +48,7 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
     point = unsigned(point_bits)
 
     remainder, remainder_1, remainder_2 = (unsigned(slope_bits) for _ in range(3))
-    digits, digits_1, digits_2 = (unsigned(DIGITS) for _ in range(3))
+    digits, digits_1, digits_2 = (unsigned(PLACE_BITS) for _ in range(3))
     first_step = divider_step(remainder, digits, found_slope, remainder_1, digits_1)
     second_step = divider_step(remainder_1, digits_1, found_slope, remainder_2, digits_2)
 
@@ -85,7 +82,7 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
     @always_comb
     def choose_digit():
         odd_v.next = False
-        for size in range(DIGITS):
+        for size in range(PLACE_BITS):
             if found_surface.cell == size:
                 odd_v.next = digits_2[size]
 

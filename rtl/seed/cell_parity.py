@@ -3,8 +3,8 @@
 
 from myhdl import always_comb, block, instances
 
-from raycaster.configuration import COORDINATE_BITS, Configuration
-from raycaster.rtl.common.widths import SMALLEST_CELL_BITS
+from raycaster.configuration import Configuration
+from raycaster.rtl.common.widths import PLACE_BITS, SMALLEST_CELL_BITS
 
 
 @block
@@ -19,12 +19,11 @@ def cell_parity(value, size, odd, config: Configuration):
         odd: output flag; the lowest bit of floor(value / cell).
     """
     lowest = config.fraction_bits + SMALLEST_CELL_BITS
-    sizes = COORDINATE_BITS - SMALLEST_CELL_BITS
 
     @always_comb
     def choose():
         odd.next = False
-        for each in range(sizes):
+        for each in range(PLACE_BITS):
             if size == each:
                 odd.next = value[lowest + each]
 

@@ -9,13 +9,15 @@ from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.by_axis import along_u, along_v, by_axis
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
+    PLACE_BITS,
+    SMALLEST_CELL_BITS,
     column_bits,
     divisor_bits,
     eye_bits,
     line_bits,
     line_factor_bits,
 )
-from raycaster.rtl.span.records import NUMBER_BITS, PLACE_BITS
+from raycaster.rtl.span.records import NUMBER_BITS
 
 WalkState = enum("IDLE", "ASK", "ANSWER", "DIVIDE")
 
@@ -53,7 +55,6 @@ def cell_walker(
     """
     width, factor_bits, far_bits = column_bits(config), line_factor_bits(config), eye_bits(config)
     limit_bits, value_bits, growth_bits = COORDINATE_BITS + 1, line_bits(config), divisor_bits(config)
-    smallest = COORDINATE_BITS - PLACE_BITS
 
     state = Signal(WalkState.IDLE)
     finding, second, up, down, at_once, decides, crosses, rose = (bit() for _ in range(8))
@@ -87,7 +88,7 @@ def cell_walker(
         limit.next = 0
         for size in range(PLACE_BITS):
             if (grid.cell == size) and not finding:
-                limit.next = (number << (size + smallest)) % (1 << limit_bits)
+                limit.next = (number << (size + SMALLEST_CELL_BITS)) % (1 << limit_bits)
 
     extend = assign((whole_limit, to_plane), lambda: (limit, grid.distance))
 
@@ -130,7 +131,7 @@ def cell_walker(
 
     @always_comb
     def see_slope():
-        eighth.next = above_left >> smallest
+        eighth.next = above_left >> SMALLEST_CELL_BITS
         slope.next = answer.left[growth_bits:].signed()
 
     @always_comb

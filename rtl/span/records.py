@@ -3,7 +3,7 @@
 
 from typing import Any
 
-from raycaster.configuration import COORDINATE_BITS, Configuration
+from raycaster.configuration import Configuration
 from raycaster.hdl.records import Interface, Record
 from raycaster.hdl.signals import Signed, bit, signed, tied, unsigned
 from raycaster.rtl.common.interfaces import Group
@@ -11,8 +11,8 @@ from raycaster.rtl.common.widths import (
     AXIS_BITS,
     CELL_BITS,
     KIND_BITS,
+    PLACE_BITS,
     RGB_BITS,
-    SMALLEST_CELL_BITS,
     column_bits,
     count_bits,
     divisor_bits,
@@ -30,9 +30,6 @@ AHEAD, U_LOW, U_HIGH, V_LOW, V_HIGH, BEYOND = range(6)
 """Numbers of a rectangle's half-lines: ahead of the eye, within its four bounds, and beyond the last mirror."""
 
 NUMBER_BITS = 3
-
-PLACE_BITS = COORDINATE_BITS - SMALLEST_CELL_BITS
-"""Width of the number of a pattern's cell."""
 
 
 class Chain(Record):

@@ -7,9 +7,9 @@ from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, tied, unsigned
 from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.by_axis import along_u, along_v, by_axis
-from raycaster.rtl.common.widths import column_bits, eye_bits, level_bits
+from raycaster.rtl.common.widths import PLACE_BITS, column_bits, eye_bits, level_bits
 from raycaster.rtl.span.cell_walker import cell_walker
-from raycaster.rtl.span.records import PLACE_BITS, Cells, Grid
+from raycaster.rtl.span.records import Cells, Grid
 
 CellsState = enum("IDLE", "WALK")
 
