@@ -200,8 +200,11 @@ class Recording:
         ]
 
     def _hidden(self, line: str) -> bool:
-        """True if the fault is in a bit that a submodule does not read, or where Yosys's memories allow none."""
+        """True if the fault is in a bit that a submodule does not read, or where Yosys allows none."""
         options = dict(re.findall(r"-(cell|port|portbit) (\S+)", line))
+        # A fault at a register's output takes its initial value away.
+        if options["port"] == "Q" and not self._leaf["settled"]:
+            return True
         # The initial words of a memory must be constant, and its ports must have one clock.
         if "$meminit" in options["cell"] or ("proc_memwr" in options["cell"] and options["port"] == "CLK"):
             return True
