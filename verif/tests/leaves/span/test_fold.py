@@ -50,17 +50,20 @@ def test_fold(reflections, leaf_of, random):
 
 
 def test_corner_finder(leaf_of, random):
-    """Lines that are 0 at both ends of a span, at one of them, or at none, in spans of one column and more."""
+    """Lines that are 0 at both ends of a span, at one of them, or at none, in spans of one column and more.
+
+    After a reset, no answer is awaited.
+    """
     config = span_config(screen="tiny", rectangles=4, reflections=2)
     leaf = leaf_of(corner_finder, config)
     leaf.case({"reset": 1, "answer_valid": 0})
-    seen = set()
+    seen, bits = set(), leaf.inputs["answer_left"].width
     for _ in range(leaf.some(300)):
         column = int(random.integers(64))
         stop = int(random.choice([column + 1, int(random.integers(column + 1, 65))]))
         axis, mirrored, met = int(random.integers(3)), int(random.random() < 0.8), random.integers(2, size=3).tolist()
         needed = int(mirrored and not met[axis])
-        ends = [0 if random.random() < 0.5 else int(random.integers(1, 1000)) for _ in range(2)]
+        ends = [0 if random.random() < 0.5 else 1 << int(random.integers(bits - 1)) for _ in range(2)]
         if stop == column + 1:
             ends[1] = ends[0]
         fields = {
@@ -80,6 +83,11 @@ def test_corner_finder(leaf_of, random):
         part, corner = stop, 0
         leaf.case({"start": 0}, {"asks_ask": 0, "done": 0})
         if needed:
+            if random.random() < 0.1:
+                leaf.case({"reset": 1})
+                leaf.case({"reset": 0, "answer_valid": 1}, {"done": 0})
+                leaf.case({"answer_valid": 0}, {"done": 0})
+                continue
             leaf.stimulus += [{}] * (ANSWER - 2)
             leaf.case({"answer_valid": 1, "answer_left": ends[0], "answer_right": ends[1]}, {"done": 1})
             leaf.case({"answer_valid": 0})

@@ -68,7 +68,10 @@ def test_painter(patterns, reflections, leaf_of, random):
 
 @pytest.mark.parametrize("patience", [0, 0.3, 0.8])
 def test_run_joiner(patience, leaf_of, random):
-    """Runs of few colours, some without columns; each side waits at times, and nothing that waits changes."""
+    """Runs of colours that differ in a bit, some without columns; each side waits at times.
+
+    Nothing that waits changes. With a reset, no row is done.
+    """
     config = span_config(screen="tiny")
     leaf = leaf_of(run_joiner, config, part=lambda: Run(config))
     leaf.case({"reset": 1, "part_valid": 0})
@@ -76,7 +79,9 @@ def test_run_joiner(patience, leaf_of, random):
     for _ in range(12):
         ends = sorted({*random.integers(1, 64, int(random.integers(20))).tolist(), 64})
         again = random.choice([0, *ends[:-1]], int(random.integers(6))).tolist()
-        rows.append([(end, int(random.integers(1, 4))) for end in sorted(ends + again)])
+        colour = int(random.integers(1, 1 << 24))
+        colours = [colour, *(colour ^ 1 << int(bit) for bit in random.integers(24, size=2))]
+        rows.append([(end, colours[random.integers(3)]) for end in sorted(ends + again)])
     parts = [part for row in rows for part in row]
     # A model of both registers says when each part is taken.
     held = shown = None
@@ -117,4 +122,8 @@ def test_run_joiner(patience, leaf_of, random):
             merged.append((end, colour))
         wanted += merged
     assert joined == wanted, "the model is wrong"
+    leaf.case({"part_valid": 1, "part_end": 64, "run_ready": 1})
+    leaf.case({"part_valid": 0}, {"run_valid": 0})
+    leaf.case({"reset": 1}, {"run_valid": 1, "run_end": 64, "done": 0})
+    leaf.case({}, {"run_valid": 0, "done": 0})
     leaf.check()

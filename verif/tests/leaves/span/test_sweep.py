@@ -11,7 +11,7 @@ from span_vectors import NOTHING, chain_bench, span_config
 from vectors import by, by_axis, named
 
 from raycaster.golden.spans import Chain, Drawing, Entry, Line, Rect, SpanModel
-from raycaster.rtl.common.widths import count_bits, eye_bits
+from raycaster.rtl.common.widths import count_bits
 from raycaster.rtl.span.entry_table import entry_table
 from raycaster.rtl.span.records import Entry as EntryRecord
 
@@ -115,23 +115,26 @@ def test_entry_table(light, reflections, leaf_of, random):
     """Tables of all levels are apart, and with a light those of the shadows."""
     config = span_config(screen="tiny", rectangles=5, reflections=reflections, light=light)
     leaf = leaf_of(entry_table, config, stored=lambda: EntryRecord(config), number=count_bits(config), place=3)
-    memory, shown = {}, None
+    memory, widths = {}, EntryRecord(config).layout
+
+    def an_entry() -> dict[str, int]:
+        return {name: int(random.integers(1 << int(width))) for name, width in widths.items()}
+
     places = [(*one, place) for one in product(range(1 + light), range(reflections + 1)) for place in range(5)]
     for shadows, level, place in places:
-        distance = memory[shadows, level, place] = int(random.integers(1 << eye_bits(config) - 1))
-        leaf.case({"append": 1, "read": 0, "shadows": shadows, "level": level, "number": place})
-        leaf.stimulus[-1] |= {"entry_distance": distance}
+        entry = memory[shadows, level, place] = an_entry()
+        leaf.case({"append": 1, "read": 0, "shadows": shadows, "level": level, "number": place} | named("entry", entry))
     leaf.case({"append": 0, "read": 1, "shadows": 0, "level": 0, "place": 0})
     shown = memory[0, 0, 0]
     for _ in range(200):
         shadows, level, place = places[int(random.integers(len(places)))]
         number = (place + 1) % 5
         append, read = [(0, 0), (0, 1), (1, 0)][int(random.integers(3))]
-        distance = int(random.integers(512))
-        leaf.case({"append": append, "read": read, "shadows": shadows, "level": level, "number": number,
-                   "place": place, "entry_distance": distance}, {"stored_distance": shown})  # fmt: skip
+        entry = an_entry()
+        asked = {"append": append, "read": read, "shadows": shadows, "level": level, "number": number, "place": place}
+        leaf.case(asked | named("entry", entry), named("stored", shown))
         if read:
             shown = memory[shadows, level, place]
         if append:
-            memory[shadows, level, number] = distance
+            memory[shadows, level, number] = entry
     leaf.check(spare=True)
