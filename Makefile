@@ -30,6 +30,7 @@ prove: EXTRAS := formal
 sim: EXTRAS := $(if $(filter-out 0,$(value GATES)),formal)
 mutate: EXTRAS := formal,test
 lint test gate verify-all: EXTRAS := formal,fpga,report,play,docs,test
+TOOLS := -m raycaster.sim.ensure_tools icarus chromium tcl
 
 .PHONY: help $(COMMANDS) $(CHECKS) test lint clean
 .NOTPARALLEL:
@@ -47,7 +48,7 @@ lint test: $(VENV)/base
 	@$(if $(filter lint,$@),$(PYTHON) -m ruff check)
 	@$(if $(filter lint,$@),$(PYTHON) -m ruff format --check)
 	@$(if $(filter lint,$@),$(PYTHON) -m pyright)
-	@$(if $(filter test,$@),$(PYTHON) -m raycaster.sim.ensure_tools icarus chromium tcl)
+	@$(if $(filter test,$@),$(PYTHON) $(TOOLS))
 	@$(if $(filter test,$@),$(PYTHON) -m pytest -q -n 2 --dist worksteal -m 'not slow' --durations=10 verif/tests)
 
 # Unknown targets.
@@ -59,7 +60,8 @@ clean:
 	find . -name __pycache__ -not -path './$(VENV)/*' -prune -exec rm -rf {} +
 
 # Install with uv if it is available. A stamp file per set of extras avoids asking the package index again. Modules are
-# compiled when they are first imported, unless Python is told not to keep what it compiles.
+# compiled when they are first imported, unless Python is told not to keep what it compiles. Meanwhile, the system's
+# package manager gets the tools that tests need.
 NO_COMPILE = $(if $(PYTHONDONTWRITEBYTECODE),,--no-compile)
 PIP = $(or $(addsuffix  pip install --python $(PYTHON),$(shell command -v uv)),$(PYTHON) -m pip install --use-pep517 $(NO_COMPILE))
 ADD = $(PIP) -q -c constraints.txt -e
@@ -68,5 +70,7 @@ $(VENV)/base: pyproject.toml constraints.txt
 	@$(PYTHON3) -c 'import sys, ensurepip, venv; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { echo \
 	    "error: $(PYTHON3) is not Python 3.11 or newer with its venv module (Debian: apt-get install python3-venv)" >&2; exit 2; }
 	@$(PYTHON3) raycaster/places.py
-	@echo "making a Python environment in $(VENV)/ (usually a minute)" && $(PYTHON3) -m venv --clear $(VENV) \
-	    && $(ADD) '.$(addsuffix ],$(addprefix [,$(EXTRAS)))' && touch $@ $(addprefix $(VENV)/,$(EXTRAS))
+	@echo "making a Python environment in $(VENV)/ (usually a minute)"
+	@$(if $(filter test,$(MAKECMDGOALS)),$(PYTHON3) $(TOOLS) &)
+	@$(PYTHON3) -m venv --clear $(VENV) && $(ADD) '.$(addsuffix ],$(addprefix [,$(EXTRAS)))'
+	@touch $@ $(addprefix $(VENV)/,$(EXTRAS)) && wait

@@ -12,7 +12,6 @@ from tempfile import TemporaryDirectory
 from raycaster.docs.refusals import refusal_table
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs" / "hdl.md"
 EXAMPLE = ROOT / "examples" / "fifo" / "fifo.py"
 
 

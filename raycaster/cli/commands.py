@@ -55,11 +55,10 @@ COMMANDS: Mapping[str, Command] = {
     "verify mutate": Command("raycaster.verif.mutation.mutate", "plant faults that the tests must notice", "formal"),
     "verify gate": Command("raycaster.verif.gate", "check that tests still notice planted faults", "test"),
     "verify coverage": Command("raycaster.verif.coverage", "list lines and branches that no frame or bench reaches"),
-    "verify dvi": Command("raycaster.verif.dvi.watch", "decode and compare a board's video output"),
 }
 
 
-NOT_OF_MAKE = ("completion", "import", "options", "results", "verify coverage", "verify dvi")
+NOT_OF_MAKE = ("completion", "import", "options", "results", "verify coverage")
 """Commands that are not make targets; `.venv/bin/raycaster` runs them."""
 
 

@@ -19,7 +19,6 @@ from raycaster.output import Console
 from raycaster.report.designs import design_chapter, find_designs, of_kept, to_keep
 from raycaster.report.errors import error_chapter, find_pictures
 from raycaster.report.extent import Extent, extent
-from raycaster.report.omissions import omission_chapter
 from raycaster.report.page import Chapter, Section, write
 from raycaster.report.points import Sweep
 from raycaster.report.stability import stability_chapter
@@ -63,7 +62,6 @@ def write_report(directory: Path, what: Extent, sweep: Sweep, command_line: str)
             design_chapter(designs, pictures.all_shares),
             error_chapter(pictures),
             stability_chapter(what, sweep),
-            omission_chapter(what, scenes, sweep),
             Chapter([_method(what, command_line)]),
         ),
         Chapter(),

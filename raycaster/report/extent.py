@@ -28,8 +28,6 @@ class Extent:
     cases: Sequence[Case]
     case_fractions: Sequence[int]
     case_screen: str
-    left: Sequence[str]
-    """Names of the packaged scenes for which a design is reduced step by step."""
 
 
 def extent(quick: bool) -> Extent:
@@ -39,11 +37,10 @@ def extent(quick: bool) -> Extent:
         return Extent(
             fractions=(0, 2, 4), worlds=24,
             designs=[*seed_designs((), (16,), "tiny")[1:2], *exact_designs((4,), "tiny")], cases=cases,
-            case_fractions=(0,), case_screen="tiny", left=(),
+            case_fractions=(0,), case_screen="tiny",
         )  # fmt: skip
     return Extent(
         fractions=range(9), worlds=200,
         designs=[*seed_designs((0, 4, 8), (20, 32)), *exact_designs((4, 5, 8, 10, 16))], cases=cases,
         case_fractions=(0, 4), case_screen="vga",
-        left=("corners", "facing_mirrors", "pool", "evening", "shadow_hall"),
     )  # fmt: skip

@@ -56,10 +56,9 @@ class Table:
     rows: Sequence[Sequence[Cell]]
 
     @classmethod
-    def of(cls, data: Data, hidden: int = 0) -> Table:
-        """Make the table of all rows, without as many of the last columns."""
-        shown = len(data.columns) - hidden
-        return cls(data, data.columns[:shown], [row[:shown] for row in data.rows])
+    def of(cls, data: Data) -> Table:
+        """Make the table of all rows and columns."""
+        return cls(data, data.columns, data.rows)
 
 
 @dataclass(frozen=True)

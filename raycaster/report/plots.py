@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from itertools import pairwise
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Any
@@ -16,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from raycaster.configuration import Rounding
 from raycaster.golden.exact import ExactModel
@@ -152,7 +151,7 @@ def wrong_by_scene(points: Sequence[Point]) -> Figure:
     return figure
 
 
-# Stability and omissions ----------------------------------------------------------------------------------------------
+# Stability ------------------------------------------------------------------------------------------------------------
 
 
 @styled
@@ -168,27 +167,4 @@ def stiffness(cases: Mapping[str, tuple[float, float, float]], labelled: Sequenc
     _legend(figure)
     labels = [(*cases[name][:2], name) for name in labelled]
     label(axes, labels, conditions, errors, expand=(1.3, 1.8), force_text=(0.6, 1.2))
-    return figure
-
-
-@styled
-def waterfall(title: str, steps: Sequence[tuple[str, int]]) -> Figure:
-    """Plot the cells of a design and the change by each step; omit steps without a change."""
-    changed = [(what, before, after) for (_, before), (what, after) in pairwise(steps) if after != before]
-    (first, whole), (_, left) = steps[0], steps[-1]
-    bars = [(first, 0, whole, f"{whole:,}", BLUE)]
-    for what, before, after in changed:
-        colour = ORANGE if after < before else VERMILION
-        bars.append((f"- {what}", min(before, after), max(before, after), f"{after - before:+,}", colour))
-    bars.append(("this scene alone", 0, left, f"{left:,} ({left / whole:.0%})", BLUE))
-    names, starts, ends, words, colours = zip(*bars, strict=True)
-    figure, [[axes]] = new_figure(0.9 + 0.24 * len(bars))
-    drawn = axes.barh(range(len(bars)), np.subtract(ends, starts), 0.7, left=starts, color=colours)
-    axes.bar_label(drawn, words, padding=3, fontsize=LABEL_POINTS)
-    axes.set_yticks(range(len(bars)), names)
-    axes.invert_yaxis()
-    axes.set(xlabel="LUT4", title=title, xlim=(0, 1.35 * max(ends)))
-    axes.xaxis.set_major_formatter("{x:,.0f}")
-    axes.xaxis.set_major_locator(MaxNLocator(4))
-    axes.grid(visible=False, axis="y")
     return figure

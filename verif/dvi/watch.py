@@ -1,39 +1,28 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster verify dvi`: decode the video output of a simulated board, as a monitor does.
-
-The timing is checked against the standard, and every pixel is compared with the golden model.
-"""
+"""Decode the video output of a simulated board, as a monitor does, and check its timing against the standard."""
 
 from __future__ import annotations
 
 import contextlib
 import re
 import subprocess
-import sys
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
 
-from raycaster.configuration import Configuration, need_avalon
+from raycaster.configuration import Configuration
 from raycaster.design.for_scene import Design
-from raycaster.design.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.errors import UserError
-from raycaster.fit.fixing import add_fix_option, design_of
-from raycaster.fpga.bitstream import write_project
-from raycaster.fpga.board import Board, OpenBoard, QuartusBoard, board_names, find_board
+from raycaster.fpga.board import Board, QuartusBoard
 from raycaster.golden.engines import model_of
-from raycaster.golden.frames import screens_before
-from raycaster.golden.picture import count_wrong, shown
+from raycaster.golden.picture import shown
 from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
-from raycaster.output import Console, emptied, printable
 from raycaster.rtl.system.scene_player import BUTTONS
-from raycaster.scene import find_scene
 from raycaster.screens import Screen
 from raycaster.sim.monitor import Line, VideoError, decode_frame
-from raycaster.sim.simulator import SimulationError, add_simulator_option, build_program
+from raycaster.sim.simulator import SimulationError, build_program
 from raycaster.verif.dvi.wiring import PIN_FILES, device, read_pin_file, wiring_of
 
 SYMBOL_BITS = 10
@@ -342,46 +331,3 @@ def _frames(bits: np.ndarray, screen: Screen) -> list[np.ndarray]:
     firsts = [int(np.flatnonzero(line_starts == start)[0]) for start in frame_starts]
     frames = [lines[first : first + screen.vertical.total] for first in firsts]
     return [decode_frame(frame, screen, 8) for frame in frames if len(frame) == screen.vertical.total]
-
-
-def command_parser() -> CommandParser:
-    """Build the parser of the command line."""
-    parser = CommandParser("verify dvi", __doc__, "boxes")
-    parser.add_argument("--board", default="ulx3s", help=f"{', '.join(board_names(OpenBoard))} (default: %(default)s)")
-    add_scene_argument(parser, "what to show (mirror_room)", default=find_scene("mirror_room"))
-    parser.add_argument("--frames", type=int, default=1, help="number of frames to check (default: %(default)s)")
-    add_simulator_option(parser)
-    parser.add_argument("--output", type=Path, default=Path("build/dvi"), help="output directory (%(default)s)")
-    add_fix_option(parser)
-    add_configuration_options(parser)
-    return parser
-
-
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command and return its exit code."""
-    arguments = command_parser().parse_args(argv)
-    board = find_board(arguments.board, OpenBoard)
-    console = Console()
-    design = design_of(arguments.scene, given_options(arguments), arguments.fix, console, **board.configuration)
-    need_avalon(design.configuration, "a board with a scene")
-    output = arguments.output / board.name / design.name
-    emptied(output)
-    try:
-        with console.waiting(f"{board.name}, {design.configuration.name}: building and simulating"):
-            sources = write_project(board, design, output)
-            frames = watch(
-                board, sources, design.configuration, arguments.frames, output, simulator=arguments.simulator,
-                blank=screens_before(design.scene, design.configuration, design.reflections),
-            )  # fmt: skip
-    except (SimulationError, VideoError) as error:
-        print(printable(error), file=sys.stderr)
-        return 1
-    expected = golden(design)
-    wrong = sum(count_wrong(frame, expected) for frame in frames)
-    Image.fromarray(frames[-1]).save(output / "frame.png")
-    console.print(
-        f"{board.name}, {design.configuration.name}, {design.path}: {wrong} of {len(frames) * expected[..., 0].size:,} "
-        f"pixels are wrong; the last frame is {output / 'frame.png'}",
-        soft_wrap=True,
-    )
-    return int(wrong > 0)

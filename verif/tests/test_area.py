@@ -13,8 +13,7 @@ from conftest import called
 
 from raycaster.convert.take_home import TOP
 from raycaster.design.decide import configure
-from raycaster.errors import UserError
-from raycaster.fpga import area, flows, placement
+from raycaster.fpga import flows, placement
 from raycaster.fpga.board import Board, QuartusBoard, board_names, find_board
 from raycaster.fpga.cells import FAMILIES, Area, measure, measure_modules
 from raycaster.runs.outcomes import kept_outcome
@@ -70,39 +69,6 @@ def test_wide_multipliers(family, multipliers, tmp_path):
     assert measure(wide, FAMILIES[family], tmp_path / "area", "ray_unit").multipliers == 2 * multipliers
 
 
-FEATURES = {
-    "seed": ["", "m", "p", "mp"],
-    "exact": ["", "t", "m", "p", "l", "tmpl"],
-    "span": ["", "t", "m", "p", "l", "tmpl"],
-}
-"""Features of each engine's designs, by their first letters: none, each alone, and all."""
-
-
-def test_fixed_sets_of_designs(tmp_path, monkeypatch, capsys, names_for_digests):
-    """Each feature is counted alone: for the seed engine in one ray unit, else in designs. The page's rooms follow."""
-    sizes = {"turn": 1, "materials": 10, "patterns": 20, "light": 40}
-
-    def count(config, family, directory, top):
-        assert family.name == "ecp5"
-        whole = "ray_unit" if config.engine == "seed" else TOP
-        assert top == whole
-        return Area(100 + sum(size for name, size in sizes.items() if getattr(config, name)), 7, 0, 3, 0)
-
-    monkeypatch.setattr(area, "measure", count)
-    path = tmp_path / "features.json"
-    area.main(["--features", "--output", str(tmp_path / "area"), "--keep", str(path)])
-    designs = kept_outcome(path).figures["designs"]
-    letters = {name[0]: size for name, size in sizes.items()}
-    featured = [row for row in designs if row["options"].keys() <= sizes.keys()]
-    assert [(row["engine"], "".join(name[0] for name in row["options"]), row["tables"]) for row in featured] == [
-        (engine, chosen, 100 + sum(map(letters.get, chosen))) for engine, sets in FEATURES.items() for chosen in sets
-    ]
-    assert all(room in [row["options"] for row in designs] for room in area.ROOM_DESIGNS.values())
-    shown = capsys.readouterr().out
-    assert "seed MATERIALS=1 PATTERNS=1" in shown
-    assert shown.count("+71.0%") == 2 + sum("light" in room for room in area.ROOM_DESIGNS.values())
-
-
 @pytest.mark.parametrize(
     ("reached", "code", "kept", "runs"),
     [
@@ -146,48 +112,6 @@ def test_where_the_blocks_are(tmp_path):
     tiles, names = placement.tiles_of(path)
     assert [names[number] for number in tiles[0]] == 8 * ["a"]
     assert [names[number] for number in tiles[1, :4]] == ["a", "d.e", "d", "all else"] and set(tiles[1, 4:]) == {-1}
-
-
-def test_a_module_is_routed_alone(tmp_path, monkeypatch, capsys):
-    """nextpnr's report on paths between registers is printed and kept; paths from and to pads are left out."""
-    used = {"TRELLIS_COMB": 9, "TRELLIS_FF": 8, "MULT18X18D": 4, "DP16KD": 2}
-    path = [
-        {"delay": 0.52, "to": {"cell": "count", "port": "Q"}},
-        {"delay": 1.234, "net": "rect_mem_i.index", "to": {"cell": "LUT", "port": "A"}},
-    ]
-    clocks = [("<async>", "posedge $glbnet$clk"), ("posedge $glbnet$clk",) * 2]
-    report = {
-        "fmax": {"$glbnet$clk": {"achieved": 77.007, "constraint": 51.5}},
-        "utilization": {name: {"used": count, "available": 10} for name, count in used.items()},
-        "critical_paths": [{"from": one, "to": other, "path": path} for one, other in clocks],
-    }
-    commands = []
-
-    def run_nextpnr(command, again, directory):
-        commands.append((command, again))
-        (directory / "report.json").write_text(json.dumps(report))
-        return subprocess.CompletedProcess(command, 0, "", "")
-
-    monkeypatch.setattr(area, "place_and_route", run_nextpnr)
-    monkeypatch.setattr(area, "write_netlist", lambda flow, sources, top, multipliers, work: work / f"{top}.json")
-    kept = tmp_path / "routed.json"
-    options = ("--route", "--seed", "3", "--engine", "exact", "--output", str(tmp_path / "area"), "--keep", str(kept))
-    area.main(options)
-    [(command, again)] = commands
-    assert again == ()
-    assert {"--85k", f"{TOP}.json"} <= {*command}
-    assert [command[command.index(name) + 1] for name in ("--freq", "--seed")] == ["51.5", "3"]
-    figures = kept_outcome(kept).figures
-    assert figures["cells"][figures["kinds"]["logic"]] == [9, 10]
-    assert figures["clocks"] == {"clk": [77.01, 51.5]}
-    assert figures["path"] == [[0.52, "count"], [1.23, "rect_mem_i.index"]]
-    shown = capsys.readouterr().out
-    assert re.search(r"clk +77.01 MHz +51.50 MHz +met", shown)
-    assert re.search(r"1.23 +rect_mem_i.index", shown)
-    with pytest.raises(UserError, match="route: places a module on an ECP5"):
-        area.main(["--route", "--family", "cyclonev"])
-    with pytest.raises(UserError, match="seed: chooses the placement"):
-        area.main(["--seed", "3"])
 
 
 @pytest.mark.slow

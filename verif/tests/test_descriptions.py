@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT
-from systemrdl.node import RegNode
 from tcl import compare_calls, tcl_calls
 
 from raycaster.configuration import MOST_RECTANGLES, Configuration
@@ -19,7 +18,7 @@ from raycaster.convert.register_views import HEADER, SOFTWARE, write_header
 from raycaster.convert.take_home import TOP
 from raycaster.convert.write import write_verilog
 from raycaster.design.decide import configure
-from raycaster.registers import address_bits, compile_registers
+from raycaster.registers import address_bits
 
 
 def small(**options: object) -> Configuration:
@@ -72,12 +71,3 @@ def test_the_nios_system(tmp_path):
 def test_the_header_has_not_drifted(tmp_path):
     write_header(12, tmp_path / HEADER)
     assert (ROOT / SOFTWARE / HEADER).read_text() == (tmp_path / HEADER).read_text(), "outdated; run make registers"
-
-
-def test_each_register_and_field_has_a_text():
-    """All texts differ, except those of a rectangle's two corners, which share a type."""
-    registers = [node for node in compile_registers(12).descendants() if isinstance(node, RegNode)]
-    texts = {node.get_path(): node.get_property("desc") for node in registers}
-    assert all(texts.values())
-    assert len(set(texts.values())) == len(texts) - 1
-    assert all(field.get_property("desc") for node in registers for field in node.fields())

@@ -13,7 +13,6 @@ from elftools.elf.elffile import ELFFile
 from host_software import CONFIG, CORNER, FIRE, Registers, Session, compile_library
 from unicorn import riscv_const
 
-from raycaster.errors import UserError
 from raycaster.memory_map import BUTTONS, MEMORY, MEMORY_BYTES, RAY_TRACER, UART, UART_BUSY, c_header
 from raycaster.registers import register_map
 from raycaster.runs.tools import ToolError
@@ -266,14 +265,6 @@ def test_the_command(firmware, tmp_path):
     assert "32,768 bytes of RAM" in done.stdout
     assert {path.name for path in (tmp_path / "here").glob("[!.]*")} == {"firmware.elf", "firmware.hex"}
     assert (tmp_path / "here" / "firmware.hex").read_bytes() == firmware.words.read_bytes()
-
-
-@pytest.mark.parametrize("missing", ["ziglang", "elftools"])
-def test_a_missing_tool_is_one_line(tmp_path, monkeypatch, missing):
-    monkeypatch.setattr("raycaster.sw.firmware.find_spec", lambda name: None if name == missing else name)
-    with pytest.raises(UserError, match=rf"^{missing} is missing; it comes with the extra play: "):
-        main(["--output", str(tmp_path / "output")])
-    assert not any(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(

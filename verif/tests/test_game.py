@@ -28,7 +28,6 @@ from host_software import (
 
 from raycaster.design.decide import configure
 from raycaster.golden.rays import primary_slopes
-from raycaster.memory_map import BUTTON_NAMES
 from raycaster.registers import register_map
 from raycaster.scene import Camera
 from raycaster.sim.register_model import LiveScene
@@ -175,35 +174,12 @@ def test_a_game_starts_the_same_whatever_came_before(library):
     assert games[0] == games[1] == games[2]
 
 
-def test_four_courts_repeat(session):
-    courts = []
-    for level in range(1, 6):
-        session.game.level = level
-        assert session.draw() == Error.OK
-        courts.append(session.device.shown().rectangles.colours[Entry.FLOOR :].tolist())
-    assert [courts.index(court) for court in courts] == [0, 1, 2, 3, 0]
-
-
 def test_what_is_left_out_alone_is_not_drawn(session):
     """The ball, which is left out at the end, need not have moved in that frame."""
     for phase in (Phase.PAST, Phase.OVER, Phase.PAST):
         session.game.phase = phase
         assert session.draw() == Error.OK
         assert session.device.shown().rectangles.enabled[Entry.BALL] == (phase != Phase.OVER)
-
-
-@pytest.mark.parametrize(
-    ("button", "axis", "sign", "edge"),
-    [("left", "y", -1, 89 + 32), ("right", "y", 1, 423 - 32), ("up", "z", 1, 264 - 25), ("down", "z", -1, 25)],
-)
-def test_buttons_move_the_racket(session, button, axis, sign, edge):
-    button = BUTTON_NAMES.index(button)
-    places = [getattr(session.game.racket, axis)]
-    for held in (1 << button, 0b1111, *200 * [1 << button]):
-        session.step(held)
-        places.append(getattr(session.game.racket, axis))
-    assert np.sign(places[1] - places[0]) == sign
-    assert places[-2:] == [edge, edge], "the racket's edge stops at the wall"
 
 
 def test_the_player_looks_after_the_ball(library):

@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Docstrings and comments stand in the Verilog, in its words."""
 
-import ast
-import re
 from pathlib import Path
 
-import pytest
 from hdl_blocks import converted
 from myhdl import always_comb, always_seq, block
 
-from raycaster import rtl
 from raycaster.convert.vocabulary import VOCABULARY
 from raycaster.design.decide import configure
 from raycaster.hdl.signals import bit, reset_signal
@@ -95,17 +91,3 @@ def converted_texts(directory: Path) -> list[str]:
         made = block_(**{name: programs.argument(maker) for name, maker in makers.items()})
         texts += [module.path.read_text() for module in converted(made, directory).values()]
     return texts
-
-
-@pytest.mark.parametrize(
-    "path", [path for path in Path(rtl.__file__).parent.glob("*/*.py")], ids=lambda path: path.stem
-)
-def test_each_port_of_the_hardware_is_documented(path):
-    """The docstring of each block lists its arguments in order, but may leave out the clock, a reset and the design."""
-    for node in ast.parse(path.read_text()).body:
-        if isinstance(node, ast.FunctionDef) and any(ast.unparse(one) == "block" for one in node.decorator_list):
-            _, _, listed = (ast.get_docstring(node) or "").partition("Args:\n")
-            texts = re.findall(r"^    (\w+): ", listed, re.M)
-            given = [argument.arg for argument in [*node.args.args, *node.args.kwonlyargs]]
-            unsaid = {"clk", "reset", "config"} - {*texts}
-            assert texts == [name for name in given if name not in unsaid], f"{path}:{node.lineno}"

@@ -96,7 +96,6 @@ def test_text_is_shown_as_it_is():
         ("fit", "--error", "[/nope]\x1b"),
         ("bitstream", "--board", "[/nope]\x1b"),
         ("area", "--only", "[/nope]\x1b"),
-        ("verify dvi", "--board", "[/nope]\x1b"),
         ("[/nope]\x1b",),
     ],
     ids=lambda words: words[0],

@@ -37,7 +37,7 @@ MAY_IMPORT = {
     "play": ("raycaster", "runs", "golden", "rtl", "design", "sw", "convert", "sim"),
     "web": ("raycaster", "runs", "golden", "rtl", "design", "sw", "fpga", "sim", "debug", "play"),
     "verif": ("hdl", "raycaster", "runs", "golden", "rtl", "design", "fit", "convert", "fpga", "sim"),
-    "report": ("raycaster", "runs", "golden", "rtl", "design", "fit", "convert", "fpga", "sim", "verif"),
+    "report": ("raycaster", "runs", "golden", "rtl", "design", "convert", "fpga", "sim", "verif"),
     "docs": (
         "hdl", "raycaster", "runs", "golden", "rtl", "design", "cli", "convert", "fpga", "sim", "debug", "web", "verif",
         "report",

@@ -12,7 +12,6 @@ from functools import partial
 from html import unescape
 
 import pytest
-from conftest import ROOT
 from rich.console import Console
 
 from raycaster.design.decide import configure
@@ -24,11 +23,9 @@ from raycaster.report.points import Point, Sweep, picture
 from raycaster.scene import find_scene
 from raycaster.verif.catalogue import catalogue
 
-CORNERS = str(ROOT / "raycaster" / "scenes" / "corners.toml")
 POINTS = (
     picture("seed:5", 4, "nearest", 1),
     Point("cells", "ray_unit", configure(screen="tiny", units=1, rectangles=1, allow_underrun=True)),
-    Point("left", CORNERS, configure(engine="exact")),
     Point("time", "raycaster/scenes/boxes.toml", configure(culling=False, fraction_bits=8), 5),
 )
 
@@ -64,12 +61,12 @@ def test_a_small_report(tmp_path, monkeypatch):
     for name in ("corners", "mirror_room"):
         (scenes / f"{name}.toml").write_text(find_scene(name).read_text())
     monkeypatch.chdir(tmp_path)
-    what = replace(extent(quick=True), fractions=(0, 4), worlds=6, cases=catalogue()[::20], left=["corners"])
+    what = replace(extent(quick=True), fractions=(0, 4), worlds=6, cases=catalogue()[::20])
     write = partial(report.write_report, tmp_path, what, command_line="raycaster report")
     path, figures = write(sweep_of(tmp_path))
     html = unescape(path.read_text())
     assert 'class="alarm"' not in html and figures["alarms"] == 0
-    assert html.count("<figure") == html.count("<svg ") == 10
+    assert html.count("<figure") == html.count("<svg ") == 9
     assert not re.search(r"(src|href)=\"(?!data:|#)", html)
     # The kept figures of the designs draw the same plot.
     again = designs.of_kept(json.loads(json.dumps(figures["designs"])))
@@ -77,7 +74,6 @@ def test_a_small_report(tmp_path, monkeypatch):
     assert (tmp_path / "again.svg").read_text() == (tmp_path / "work_frame_ms.svg").read_text()
     corners = picture("raycaster/scenes/corners.toml", 4, "nearest", 1)
     assert corners.command in {row["command"] for row in rows("pictures")}
-    assert [row["left out"] for row in rows("left")][::9] == ["", "hidden rectangles"]
     best = rows("designs")
     assert {one["design"].split()[0] for one in best} == {"seed", "exact,", "span"}
     assert all(one["pixels unlike the model"] == "0" and "--runs 5" in one["command"] for one in best)

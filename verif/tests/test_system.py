@@ -17,7 +17,6 @@ from raycaster.golden.frames import scene_cycles
 from raycaster.memory_map import BUTTON_NAMES, MEMORY_WORDS
 from raycaster.play import game
 from raycaster.play.system import FASTEST, check_program, play
-from raycaster.rtl.system import picorv32
 from raycaster.scene import load_scene
 from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, build_model, convert
 
@@ -99,12 +98,6 @@ def test_a_bad_program_file_is_refused(text, tmp_path):
         check_program(path)
     with pytest.raises(UserError, match="nowhere"):
         check_program(tmp_path / "nowhere.hex")
-
-
-def test_missing_picorv32_is_reported(monkeypatch):
-    monkeypatch.setattr(picorv32.importlib.util, "find_spec", lambda _: None)
-    with pytest.raises(UserError, match=r"^PicoRV32 is missing; it comes with the extra play: "):
-        picorv32.picorv32_source()
 
 
 @pytest.mark.slow

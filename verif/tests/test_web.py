@@ -149,6 +149,7 @@ def test_a_tour(page, request, model, name, count, screen):
     assert page.evaluate(TOUR, [model, packaged_scenes()[name].read_text(), views]) == expected
 
 
+@pytest.mark.slow
 def test_stopped_clocks_change_nothing(page, site, monkeypatch):
     """A model whose clocks never stop, evaluated as usual, draws the same runs in the same clocks, after each write."""
     opened(page, (site / "index.html").as_uri())
