@@ -7,11 +7,11 @@ from span_vectors import NOTHING, any_chain, any_slope, chain_inputs, span_confi
 from vectors import by, by_axis, named
 
 from raycaster.golden.spans import ANSWER, Drawing, Entry, Line, Rect, SpanModel
-from raycaster.rtl.common.widths import column_bits
 from raycaster.rtl.span.chain_stack import chain_stack
 from raycaster.rtl.span.corner_finder import corner_finder
 from raycaster.rtl.span.fold import fold
 from raycaster.rtl.span.quarters_of import quarters_of
+from raycaster.rtl.span.records import Frame
 
 
 def a_rect(random, axis: int, plane: int) -> Rect:
@@ -103,15 +103,15 @@ def test_corner_finder(leaf_of, random):
 @by(reflections=[1, 2, 4])
 def test_chain_stack(reflections, leaf_of, random):
     config = span_config(screen="tiny", rectangles=4, reflections=reflections)
-    leaf, stack = leaf_of(chain_stack, config), []
+    leaf, stack, widths = leaf_of(chain_stack, config), [], Frame(config).layout
     for _ in range(200):
         push = int(len(stack) < reflections and random.random() < 0.6)
-        number = int(random.integers(1 << column_bits(config)))
-        leaf.case({"push": push, "level": len(stack), "kept_stop": number})
+        frame = {name: int.from_bytes(random.bytes(30)) % (1 << int(width)) for name, width in widths.items()}
+        leaf.case({"push": push, "level": len(stack)} | named("kept", frame))
         if stack:
-            leaf.expect({"frame_stop": stack[-1]})
+            leaf.expect(named("frame", stack[-1]))
         if push:
-            stack.append(number)
+            stack.append(frame)
         elif stack:
             stack.pop()
     leaf.check()
