@@ -16,7 +16,7 @@ from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.design.decide import configure
 from raycaster.hdl.internals import SignalType
 from raycaster.hdl.leaf import Leaf
-from raycaster.hdl.records import Interface
+from raycaster.hdl.records import Interface, Record
 from raycaster.hdl.signals import Signed, bit, reset_signal, signed, tied, unsigned
 from raycaster.registers import address_bits
 from raycaster.rtl.common import interfaces, records, widths
@@ -255,6 +255,11 @@ def by(**values: Iterable) -> Callable:
 
 
 by_turn, by_reflections = by(turn=[False, True]), by(reflections=[0, 1, 2])
+
+
+def any_fields(random: np.random.Generator, record: Record) -> dict[str, int]:
+    """Return random fields of a record, as unsigned numbers."""
+    return {name: int.from_bytes(random.bytes(30)) % (1 << int(width)) for name, width in record.layout.items()}
 
 
 def named(prefix: str, fields: Mapping[str, Any]) -> dict[str, Any]:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from span_vectors import NOTHING, any_chain, any_slope, chain_inputs, span_config
-from vectors import by, by_axis, named
+from vectors import any_fields, by, by_axis, named
 
 from raycaster.golden.spans import ANSWER, Drawing, Entry, Line, Rect, SpanModel
 from raycaster.rtl.span.chain_stack import chain_stack
@@ -103,10 +103,10 @@ def test_corner_finder(leaf_of, random):
 @by(reflections=[1, 2, 4])
 def test_chain_stack(reflections, leaf_of, random):
     config = span_config(screen="tiny", rectangles=4, reflections=reflections)
-    leaf, stack, widths = leaf_of(chain_stack, config), [], Frame(config).layout
+    leaf, stack, record = leaf_of(chain_stack, config), [], Frame(config)
     for _ in range(200):
         push = int(len(stack) < reflections and random.random() < 0.6)
-        frame = {name: int.from_bytes(random.bytes(30)) % (1 << int(width)) for name, width in widths.items()}
+        frame = any_fields(random, record)
         leaf.case({"push": push, "level": len(stack)} | named("kept", frame))
         if stack:
             leaf.expect(named("frame", stack[-1]))

@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 from span_vectors import NOTHING, cells_bench, chain_inputs, span_config
-from vectors import LAST, by, by_axis, named
+from vectors import LAST, any_fields, by, by_axis, named
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.spans import ANSWER, Cells, Chain, Drawing, Line, SpanModel, combined, folded
 from raycaster.golden.world import OTHER_AXES
 from raycaster.hdl.signals import bit
 from raycaster.rtl.common.interfaces import Vector
-from raycaster.rtl.common.widths import RGB_BITS, index_bits, step_bits
+from raycaster.rtl.common.widths import index_bits, step_bits
 from raycaster.rtl.span import records
 from raycaster.rtl.span.shadow_scan import shadow_scan
 from raycaster.rtl.span.surface_table import surface_table
@@ -143,16 +143,16 @@ def test_shadow_scan(leaf_of, random):
 def test_surface_table(leaf_of, random):
     config = span_config(screen="tiny", rectangles=4, reflections=3, patterns=True)
     records_ = {"given": lambda: records.Paint(config), "shown": lambda: records.Paint(config)}
-    leaf, memory = leaf_of(surface_table, config, **records_), {}
-    for level in range(4):
-        memory[level] = int(random.integers(1 << RGB_BITS))
-        leaf.case({"paint": 1, "level": level, "given_colour": memory[level]})
+    leaf, surface_fields = leaf_of(surface_table, config, **records_), records.Paint(config)
+    memory = {level: any_fields(random, surface_fields) for level in range(4)}
+    for level, surface in memory.items():
+        leaf.case({"paint": 1, "level": level} | named("given", surface))
     for _ in range(100):
         paint, level, seen = int(random.integers(2)), int(random.integers(4)), int(random.integers(4))
-        colour = int(random.integers(1 << RGB_BITS))
+        surface = any_fields(random, surface_fields)
         leaf.case(
-            {"paint": paint, "level": level, "seen": seen, "given_colour": colour}, {"shown_colour": memory[seen]}
+            {"paint": paint, "level": level, "seen": seen} | named("given", surface), named("shown", memory[seen])
         )
         if paint:
-            memory[level] = colour
+            memory[level] = surface
     leaf.check()

@@ -8,7 +8,7 @@ from itertools import product
 
 import pytest
 from span_vectors import NOTHING, chain_bench, span_config
-from vectors import by, by_axis, named
+from vectors import any_fields, by, by_axis, named
 
 from raycaster.golden.spans import Chain, Drawing, Entry, Line, Rect, SpanModel
 from raycaster.rtl.common.widths import count_bits
@@ -115,14 +115,10 @@ def test_entry_table(light, reflections, leaf_of, random):
     """Tables of all levels are apart, and with a light those of the shadows."""
     config = span_config(screen="tiny", rectangles=5, reflections=reflections, light=light)
     leaf = leaf_of(entry_table, config, stored=lambda: EntryRecord(config), number=count_bits(config), place=3)
-    memory, widths = {}, EntryRecord(config).layout
-
-    def an_entry() -> dict[str, int]:
-        return {name: int(random.integers(1 << int(width))) for name, width in widths.items()}
-
+    memory, record = {}, EntryRecord(config)
     places = [(*one, place) for one in product(range(1 + light), range(reflections + 1)) for place in range(5)]
     for shadows, level, place in places:
-        entry = memory[shadows, level, place] = an_entry()
+        entry = memory[shadows, level, place] = any_fields(random, record)
         leaf.case({"append": 1, "read": 0, "shadows": shadows, "level": level, "number": place} | named("entry", entry))
     leaf.case({"append": 0, "read": 1, "shadows": 0, "level": 0, "place": 0})
     shown = memory[0, 0, 0]
@@ -130,7 +126,7 @@ def test_entry_table(light, reflections, leaf_of, random):
         shadows, level, place = places[int(random.integers(len(places)))]
         number = (place + 1) % 5
         append, read = [(0, 0), (0, 1), (1, 0)][int(random.integers(3))]
-        entry = an_entry()
+        entry = any_fields(random, record)
         asked = {"append": append, "read": read, "shadows": shadows, "level": level, "number": number, "place": place}
         leaf.case(asked | named("entry", entry), named("stored", shown))
         if read:
