@@ -155,6 +155,7 @@ FAMILIES = {
             "synth_intel_alm -family cyclonev",
             (),
             _count_cyclone_v,
+            power_up=False,
         ),
     )
 }
