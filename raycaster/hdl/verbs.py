@@ -16,7 +16,7 @@ from raycaster.hdl.internals import Assignment, Process, Register, SignalType, a
 from raycaster.hdl.signals import bit, initial
 
 Driven = SignalType | tuple[SignalType, ...]
-"""A signal, or several, of which each has its value in the lambda's tuple."""
+"""A signal, or several signals; then the lambda returns a tuple with a value for each."""
 
 
 def assign(target: Driven, value: Callable[[], Any]) -> Assignment:

@@ -93,7 +93,7 @@ SPAN_PORTS: dict[str, int | Callable[[Any], Any]] = PORTS | {
 
 
 def is_port(parameter: inspect.Parameter) -> bool:
-    """Return True unless a block's argument has a default, or a type that is neither a signal's nor an interface's."""
+    """Return True if a block's argument is a port: it has no default, and no type or that of a signal or interface."""
     kind = SignalType if parameter.annotation is parameter.empty else parameter.annotation
     port = isinstance(kind, type) and issubclass(kind, (SignalType, Interface))
     return port and parameter.default is parameter.empty
