@@ -9,9 +9,8 @@ from collections import Counter, defaultdict
 from collections.abc import Mapping
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.figure import Figure
+from PIL import Image, ImageDraw, ImageFont
 
 PLACE = re.compile(r"X(\d+)/?Y(\d+)")
 """Column and row of a tile in the name of a place."""
@@ -19,8 +18,11 @@ PLACE = re.compile(r"X(\d+)/?Y(\d+)")
 Block = tuple[str, ...]
 """A block's path, from the top down."""
 
-BLOCKS = 10
-"""Most blocks that have a colour of their own."""
+COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#e377c2", "#7f7f7f", "#bcbd22", "#17becf")
+"""A colour for each block; there are no more blocks than these."""
+
+SCALE = 8
+"""Pixels of a tile, across and down."""
 
 LEAST = 0.04
 """Least share of all cells that a block of its own has."""
@@ -29,15 +31,17 @@ LEAST = 0.04
 def draw_placement(netlist: Path, picture: Path) -> None:
     """Write a PNG of the chip's tiles, in the colours of their blocks; unused tiles are white. See `tiles_of`."""
     tiles, names = tiles_of(netlist)
-    colours = np.array([mpl.colormaps["tab10"](number)[:3] for number in range(BLOCKS)] + [(1, 1, 1)])
-    figure = Figure(figsize=(7, 7 * tiles.shape[0] / tiles.shape[1] + 1), layout="constrained")
-    axes = figure.subplots()
-    axes.imshow(colours[tiles], interpolation="nearest")
-    axes.set_axis_off()
-    for name, colour in zip(names, colours, strict=False):
-        axes.plot([], [], "s", color=colour, label=name)
-    figure.legend(loc="outside lower center", ncols=3, fontsize=8)
-    figure.savefig(picture, dpi=150)
+    font = ImageFont.load_default(2 * SCALE)
+    rows, columns = (SCALE * count for count in tiles.shape)
+    sheet = Image.new("RGB", (max(columns, 60 * SCALE), rows + SCALE + 3 * SCALE * len(names)), "white")
+    draw = ImageDraw.Draw(sheet)
+    for y, x in np.argwhere(tiles >= 0).tolist():
+        draw.rectangle((SCALE * x, SCALE * y, SCALE * x + SCALE - 1, SCALE * y + SCALE - 1), COLOURS[tiles[y, x]])
+    for number, name in enumerate(names):
+        top = rows + SCALE + 3 * SCALE * number
+        draw.rectangle((SCALE, top, 3 * SCALE, top + 2 * SCALE), COLOURS[number])
+        draw.text((4 * SCALE, top), name, "black", font)
+    sheet.save(picture)
 
 
 def tiles_of(netlist: Path) -> tuple[np.ndarray, list[str]]:
@@ -80,6 +84,6 @@ def choose_blocks(cells: Mapping[Block, int]) -> list[Block]:
     for block in chosen:
         below = {one[: len(block) + 1] for one in cells if len(one) > len(block) and one[: len(block)] == block}
         large = sorted((one for one in below if size(one) > LEAST * size(())), key=size, reverse=True)
-        if len(chosen) + len(large) <= BLOCKS:
+        if len(chosen) + len(large) <= len(COLOURS):
             chosen += large
     return chosen
