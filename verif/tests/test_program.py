@@ -89,9 +89,13 @@ def test_bash_completion(tmp_path: Path, capsys):
 WITHOUT_EXTRAS = """
 import sys
 sys.modules.update(dict.fromkeys({missing}))
+import importlib
 from contextlib import suppress
 from raycaster.cli import __main__ as program, completion
 from raycaster.cli.commands import COMMANDS
+for command in COMMANDS.values():
+    if command.extra in ("", "formal", "fpga"):
+        importlib.import_module(command.module)
 for name in COMMANDS:
     with suppress(SystemExit):
         program.main([*name.split(), "--help"])
@@ -101,7 +105,10 @@ completion.main(["bash"])
 
 
 def test_help_and_completions_without_an_extra():
-    """Each command shows its help without any package that only an extra installs."""
+    """Each command shows its help without any package that only an extra installs.
+
+    Commands that need no extra, or one without these packages, also import what they run.
+    """
     missing = {
         "adjustText", "distributed", "elftools", "litex", "matplotlib", "playwright", "pygame",
         "pygraphviz", "sphinx", "wavedrom", "ziglang",
