@@ -231,6 +231,11 @@ class Configuration(Options):
         return self.patterns or self.light
 
     @property
+    def follows_fate(self) -> bool:
+        """True if units report which rays may still be reflected, for culling or materials."""
+        return self.culling or self.materials
+
+    @property
     def most_reflections(self) -> int:
         """Most reflections per ray; a scene may ask for fewer."""
         return self.reflections

@@ -8,12 +8,14 @@ import importlib.metadata
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 from unittest.mock import MagicMock
 
 from raycaster.cli.commands import COMMANDS, Command, overview, unknown_command, verify_overview
 from raycaster.errors import UserError, not_installed
+from raycaster.places import links_complaint
 
 if TYPE_CHECKING:
     from raycaster.design.options import CommandParser
@@ -72,7 +74,14 @@ def run() -> None:
         with suppress(OSError):  # `run_command` then reports it
             print(overview(), flush=True)
             return
-    run_command = importlib.import_module("raycaster.design.options").run_command
+    try:
+        run_command = importlib.import_module("raycaster.design.options").run_command
+    except ModuleNotFoundError as error:
+        complaint = links_complaint(Path(__file__).resolve().parents[2])
+        if not complaint or not str(error.name).startswith("raycaster."):
+            raise
+        print(f"error: {complaint}", file=sys.stderr)
+        sys.exit(2)
     run_command(main)
 
 

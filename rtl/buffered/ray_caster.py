@@ -51,7 +51,7 @@ def ray_caster(
     fate = GroupFate(
         config,
         any_towards=None if ends_early(config) else tied(1, 1),
-        any_alive=None if config.culling or config.materials else tied(1, 1),
+        any_alive=None if config.follows_fate else tied(1, 1),
         may_hit=None if predicts else tied((1 << config.rectangles) - 1, unsigned(config.rectangles)),
     )
 
@@ -76,7 +76,7 @@ def ray_caster(
             camera=camera, rects=rects, may_hit=fate.may_hit, config=config,
         )  # fmt: skip
 
-    if config.culling or config.materials:
+    if config.follows_fate:
         judge_alive = assign(fate.any_alive, lambda: alive != 0)
 
     if config.light:

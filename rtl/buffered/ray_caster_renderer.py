@@ -3,7 +3,7 @@
 
 from collections.abc import Callable
 
-from myhdl import always_comb, always_seq, block, instances
+from myhdl import always_seq, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, bits_for, derived_clock, unsigned
@@ -75,12 +75,10 @@ def ray_caster_renderer(
 
     # Max comparison: the ray caster runs while the row has columns left.
     compare_max = assign(enable, lambda: rendering and picture.run and (place.column_offset != groups))
-
-    @always_comb
-    def report():
-        progress.start_screen.next = scan.start_screen
-        progress.busy.next = enable
-        progress.underrun.next = scan.start_row and enable
+    report = assign(
+        (progress.start_screen, progress.busy, progress.underrun),
+        lambda: (scan.start_screen, enable, scan.start_row and enable),
+    )
 
     # When done, the group is written, the next one takes its place, and the ray caster restarts.
     finish_group = assign(restart, lambda: reset or scan.start_screen or scan.start_row or done)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """A bridge from APB to an Avalon-MM agent."""
 
-from myhdl import always_comb, always_seq, block, instances
+from myhdl import always_seq, block, instances
 
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.interfaces import BusPort
 from raycaster.rtl.common.widths import LANES, WORD_BITS
 
@@ -47,12 +48,10 @@ def apb_bridge(clk, reset, s_apb, avm_m0):
     """
     reading = bit()
 
-    @always_comb
-    def request():
-        avm_m0.write.next = s_apb.psel and s_apb.penable and s_apb.pwrite
-        avm_m0.read.next = s_apb.psel and not s_apb.pwrite and not reading
-        avm_m0.address.next = s_apb.paddr[:2]
-        avm_m0.writedata.next, avm_m0.byteenable.next = s_apb.pwdata, s_apb.pstrb
+    request_write = assign(avm_m0.write, lambda: s_apb.psel and s_apb.penable and s_apb.pwrite)
+    request_read = assign(avm_m0.read, lambda: s_apb.psel and not s_apb.pwrite and not reading)
+    request_address = assign(avm_m0.address, lambda: s_apb.paddr[:2])
+    pass_on = assign((avm_m0.writedata, avm_m0.byteenable), lambda: (s_apb.pwdata, s_apb.pstrb))
 
     # reading: a read was accepted and is not answered yet.
     @always_seq(clk.posedge, reset=reset)
@@ -62,12 +61,9 @@ def apb_bridge(clk, reset, s_apb, avm_m0):
         else:
             reading.next = s_apb.psel and not s_apb.pwrite and not avm_m0.waitrequest
 
-    @always_comb
-    def answer():
-        s_apb.pready.next = s_apb.pwrite and not avm_m0.waitrequest
-        if reading:
-            s_apb.pready.next = avm_m0.readdatavalid
-        s_apb.prdata.next = avm_m0.readdata
-        s_apb.pslverr.next = False
+    see_ready = assign(
+        s_apb.pready, lambda: avm_m0.readdatavalid if reading else s_apb.pwrite and not avm_m0.waitrequest
+    )
+    answer = assign((s_apb.prdata, s_apb.pslverr), lambda: (avm_m0.readdata, False))
 
     return instances()

@@ -25,16 +25,11 @@ def avalon_host(clk, reset, access, strobe, address, data, avm_m0):
     every_lane = (1 << LANES) - 1
     reading, writing, waiting = bit(), bit(), bit()
 
-    @always_comb
-    def decode():
-        reading.next = access.select and (strobe == 0)
-        writing.next = access.select and (strobe != 0)
+    decode = assign((reading, writing), lambda: (access.select and (strobe == 0), access.select and (strobe != 0)))
 
     # A write or read is requested until it is accepted; a read then waits for its answer.
-    request_read = assign(avm_m0.read, lambda: reading and not waiting)
-    request_write = assign(avm_m0.write, lambda: writing)
-    request_address = assign(avm_m0.address, lambda: address)
-    request_writedata = assign(avm_m0.writedata, lambda: data)
+    request = assign((avm_m0.read, avm_m0.write), lambda: (reading and not waiting, writing))
+    pass_on = assign((avm_m0.address, avm_m0.writedata), lambda: (address, data))
     request_byteenable = assign(avm_m0.byteenable, lambda: strobe if writing else every_lane)
 
     # waiting: a read was accepted and is not answered yet.

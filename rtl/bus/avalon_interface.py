@@ -136,14 +136,10 @@ def avalon_interface(
     def become_ready():
         wait_request.next = False
 
-    @always_comb
-    def drive_ports():
-        avs_s0.waitrequest.next = wait_request
-        irq.next = irq_pending and irq_enable
-        bus.go_live.next = take_scene
-        bus.access.next = (avs_s0.write or avs_s0.read) and not wait_request
-        bus.next_address.next = avs_s0.address
-        picture.run.next = live_control[run_bit]
+    drive_ports = assign((avs_s0.waitrequest, irq), lambda: (wait_request, irq_pending and irq_enable))
+    drive_bus = assign((bus.go_live, bus.next_address), lambda: (take_scene, avs_s0.address))
+    see_access = assign(bus.access, lambda: (avs_s0.write or avs_s0.read) and not wait_request)
+    drive_run = assign(picture.run, lambda: live_control[run_bit])
 
     # Byte enables become a mask of bits.
     @always_seq(clk.posedge, reset=reset)
@@ -164,10 +160,7 @@ def avalon_interface(
             if avs_s0.byteenable[3]:
                 bus.mask.next[32:24] = 0xFF
 
-    @always_comb
-    def decode():
-        select_control.next = bus.address == control_address
-        written_ones.next = bus.data & bus.mask
+    decode = assign((select_control, written_ones), lambda: (bus.address == control_address, bus.data & bus.mask))
 
     if config.light:
         light_address = bus.address_of(registers["light"])
@@ -276,13 +269,10 @@ def avalon_interface(
 
         decode_background = assign(select_background, lambda: bus.address == background_address)
 
+        drive_background = assign(picture.background, lambda: live_background[RGB_BITS:])
+
         # More reflections than the design has count as all of them.
-        @always_comb
-        def drive_picture():
-            picture.background.next = live_background[RGB_BITS:]
-            if live_control[reflections_high:reflections_low] > most_reflections:
-                picture.reflections.next = most_reflections
-            else:
-                picture.reflections.next = live_control[reflections_high:reflections_low]
+        asked = live_control(reflections_high, reflections_low)
+        limit = assign(picture.reflections, lambda: most_reflections if asked > most_reflections else asked)
 
     return instances()

@@ -70,10 +70,8 @@ def axi4lite_bridge(clk, reset, s_axi, avm_m0):
         )
 
     choose_read = assign(asking, lambda: s_axi.arvalid and not writing and not reading and not answer_kept)
-    request_write = assign(avm_m0.write, lambda: writing)
-    request_read = assign(avm_m0.read, lambda: asking)
-    request_writedata = assign(avm_m0.writedata, lambda: s_axi.wdata)
-    request_byteenable = assign(avm_m0.byteenable, lambda: s_axi.wstrb)
+    request = assign((avm_m0.write, avm_m0.read), lambda: (writing, asking))
+    pass_on = assign((avm_m0.writedata, avm_m0.byteenable), lambda: (s_axi.wdata, s_axi.wstrb))
     request_address = assign(avm_m0.address, lambda: s_axi.awaddr[:2] if writing else s_axi.araddr[:2])
 
     # Address and data are accepted in the cycle after the agent accepted them.
@@ -96,16 +94,11 @@ def axi4lite_bridge(clk, reset, s_axi, avm_m0):
         answer_kept.next = answered and not s_axi.rready
 
     find_answer = assign(answered, lambda: avm_m0.readdatavalid or answer_kept)
-
-    @always_comb
-    def answer():
-        s_axi.awready.next = write_taken
-        s_axi.wready.next = write_taken
-        s_axi.bvalid.next = responding
-        s_axi.bresp.next = 0
-        s_axi.arready.next = read_taken
-        s_axi.rvalid.next = answered
-        s_axi.rdata.next = avm_m0.readdata
-        s_axi.rresp.next = 0
+    answer_write = assign(
+        (s_axi.awready, s_axi.wready, s_axi.bvalid, s_axi.bresp), lambda: (write_taken, write_taken, responding, 0)
+    )
+    answer_read = assign(
+        (s_axi.arready, s_axi.rvalid, s_axi.rdata, s_axi.rresp), lambda: (read_taken, answered, avm_m0.readdata, 0)
+    )
 
     return instances()

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The bits of a serial line in time."""
 
-from myhdl import always, block, instances
+from myhdl import block, instances
 
 from raycaster.hdl.signals import bits_for, tied, unsigned
-from raycaster.hdl.verbs import assign, plus
+from raycaster.hdl.verbs import assign, plus, register
 
 FRACTION = 8
 """Bits of a clock period's share of a bit, at least: the rate is right within 0.2 per cent."""
@@ -34,11 +34,6 @@ def bit_timer(clk, restart, tick, clock_hz: int, baud: int, middle: bool):
     advanced, advance = plus(phase, share, bits + 1)
 
     overflow = assign(tick, lambda: advanced[bits])
-
-    @always(clk.posedge)
-    def keep():
-        phase.next = advanced[bits:]
-        if restart:
-            phase.next = first
+    keep = register(clk, phase, lambda: first if restart else advanced[bits:])
 
     return instances()

@@ -4,6 +4,7 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.hdl.signals import bit, tied
+from raycaster.hdl.verbs import assign
 from raycaster.memory_map import BUTTONS, MEMORY, MEMORY_WORDS, RAY_TRACER, UART
 from raycaster.rtl.common.widths import WORD_BITS
 
@@ -29,18 +30,13 @@ def bus_decoder(bus, memory, tracer, uart, buttons_word, tracer_address_bits: in
     buttons_place, uart_place = tied(BUTTONS, WORD_BITS), tied(UART, WORD_BITS)
     at_memory, at_tracer, at_buttons, at_uart = (bit() for _ in range(4))
 
-    @always_comb
-    def decode():
-        at_memory.next = bus.address[:memory_end] == memory_place
-        at_tracer.next = bus.address[:tracer_end] == tracer_place
-        at_buttons.next = bus.address == buttons_place
-        at_uart.next = bus.address == uart_place
-
-    @always_comb
-    def select():
-        memory.select.next = bus.valid and at_memory
-        tracer.select.next = bus.valid and at_tracer
-        uart.select.next = bus.valid and at_uart
+    see_memory = assign(at_memory, lambda: bus.address[:memory_end] == memory_place)
+    see_tracer = assign(at_tracer, lambda: bus.address[:tracer_end] == tracer_place)
+    see_ports = assign((at_buttons, at_uart), lambda: (bus.address == buttons_place, bus.address == uart_place))
+    select = assign(
+        (memory.select, tracer.select, uart.select),
+        lambda: (bus.valid and at_memory, bus.valid and at_tracer, bus.valid and at_uart),
+    )
 
     @always_comb
     def answer():

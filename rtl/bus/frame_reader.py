@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The reader of frames from a serial line."""
 
-from myhdl import always_comb, always_seq, block, instances
+from myhdl import always_comb, always_seq, block, concat, instances
 
 from raycaster.hdl.signals import Unset, bit, bits_for, unsigned
 from raycaster.hdl.verbs import assign, register
@@ -55,16 +55,9 @@ def frame_reader(clk, reset, received, data, good, words, place, shown, places: 
 
     # What comes after a reset is the rest of a frame.
     begin = assign(fresh, lambda: is_flag or reset)
-
-    @always_comb
-    def gather():
-        word.next[WORD_BITS - DATA_BITS :] = earlier
-        word.next[: WORD_BITS - DATA_BITS] = plain
-
-    @always_comb
-    def decide():
-        store.next = is_data and lane == 3 and at != most
-        sound.next = state == ended_well and lane == 0 and at != 0 and not escaped and not bad
+    gather = assign(word, lambda: concat(plain, earlier))
+    see_word = assign(store, lambda: is_data and lane == 3 and at != most)
+    see_sound = assign(sound, lambda: state == ended_well and lane == 0 and at != 0 and not escaped and not bad)
 
     @always_seq(clk.posedge, reset=reset)
     def follow():

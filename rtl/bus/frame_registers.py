@@ -36,10 +36,9 @@ def frame_registers(clk, reset, bus, events, rect_readback, readback, rectangles
     late, list_full, clears = bit(), bit(), bit()
     ones, word = unsigned(WORD_BITS), unsigned(WORD_BITS)
 
-    @always_comb
-    def decode():
-        ones.next = bus.data & bus.mask
-        clears.next = bus.write and bus.address == left_address and bus.mask != 0
+    decode = assign(
+        (ones, clears), lambda: (bus.data & bus.mask, bus.write and bus.address == left_address and bus.mask != 0)
+    )
 
     @always_seq(clk.posedge, reset=reset)
     def measure():

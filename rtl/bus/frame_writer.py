@@ -36,8 +36,7 @@ def frame_writer(clk, reset, start, valid, word, last, ready, sending, data, acc
 
     checker = frame_check(clk, clear=start, add=add, data=plain, state=check)
 
-    see_in_words = assign(in_words, lambda: state == WriterState.WORDS)
-    see_in_check = assign(in_check, lambda: state == WriterState.CHECK)
+    see_state = assign((in_words, in_check), lambda: (state == WriterState.WORDS, state == WriterState.CHECK))
     see_sending = assign(sending, lambda: valid if state == WriterState.WORDS else state != WriterState.IDLE)
     choose_word = assign(source, lambda: word if in_words else check ^ 0xFFFF_FFFF)
 
@@ -65,11 +64,7 @@ def frame_writer(clk, reset, start, valid, word, last, ready, sending, data, acc
             data.next = plain ^ ESCAPED
 
     proceed = assign(advance, lambda: sending and accepted and not start and (is_flag or escaped or not special))
-
-    @always_comb
-    def count_words():
-        add.next = advance and in_words
-        ready.next = advance and in_words and lane == 3
+    count_words = assign((add, ready), lambda: (advance and in_words, advance and in_words and lane == 3))
 
     @always_seq(clk.posedge, reset=reset)
     def step():

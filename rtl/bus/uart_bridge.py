@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A bridge from a serial port to an Avalon-MM agent."""
 
-from myhdl import Signal, always_comb, always_seq, block, enum, instances
+from myhdl import Signal, always_seq, block, enum, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, bits_for, unsigned
@@ -87,26 +87,17 @@ def uart_bridge(clk, reset, uart, avm_m0, clock_hz: int, baud: int, places: int)
         clk, reset, valid=sending, data=sent, ready=accepted, uart_tx=uart.tx, clock_hz=clock_hz, baud=baud
     )
 
-    @always_comb
-    def see_state():
-        stepping.next = state == BridgeState.STEP
-        start.next = state == BridgeState.REPLY
-        offering.next = state == BridgeState.SEND
-        at_stop.next = place == stop
+    see_state = assign(
+        (stepping, start, offering, at_stop),
+        lambda: (state == BridgeState.STEP, state == BridgeState.REPLY, state == BridgeState.SEND, place == stop),
+    )
 
     # A frame waits while another one's words are written. That takes less time than its own next words need to come.
-    @always_comb
-    def decide():
-        take.next = waiting and (offering or state == BridgeState.IDLE)
-        writing.next = stepping and left != 0 and not at_stop
-        last.next = head[WRITE_BIT] or left == 0
-
-    @always_comb
-    def request():
-        avm_m0.write.next = writing
-        avm_m0.read.next = state == BridgeState.READ
-        avm_m0.address.next, avm_m0.writedata.next, avm_m0.byteenable.next = address, shown, every_lane
-
+    decide_take = assign(take, lambda: waiting and (offering or state == BridgeState.IDLE))
+    decide_writing = assign(writing, lambda: stepping and left != 0 and not at_stop)
+    decide_last = assign(last, lambda: head[WRITE_BIT] or left == 0)
+    request = assign((avm_m0.write, avm_m0.read), lambda: (writing, state == BridgeState.READ))
+    pass_on = assign((avm_m0.address, avm_m0.writedata, avm_m0.byteenable), lambda: (address, shown, every_lane))
     count_on = assign(next_address, lambda: address + 1 if address != last_address else 0)
     choose_answer = assign(answer, lambda: head if at_head else avm_m0.readdata)
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The transmitter of a serial port."""
 
-from myhdl import Signal, always_comb, always_seq, block, instances
+from myhdl import Signal, always_seq, block, instances
 
 from raycaster.hdl.signals import bit, bits_for, unsigned
 from raycaster.hdl.verbs import assign
@@ -32,10 +32,7 @@ def uart_transmitter(clk, reset, valid, data, ready, uart_tx, clock_hz: int, bau
 
     timer = bit_timer(clk, restart=start, tick=bit_end, clock_hz=clock_hz, baud=baud, middle=False)
 
-    @always_comb
-    def decide():
-        free.next = bits_left == 0
-        start.next = valid and (bits_left == 0)
+    decide = assign((free, start), lambda: (bits_left == 0, valid and (bits_left == 0)))
 
     # Ones follow the byte: the stop bit and the idle line.
     @always_seq(clk.posedge, reset=reset)

@@ -46,12 +46,9 @@ def wishbone_bridge(clk, reset, wb, avm_m0):
     selected, reading, still_wanted = bit(), bit(), bit()
 
     select = assign(selected, lambda: wb.cyc and wb.stb)
-
-    @always_comb
-    def request():
-        avm_m0.write.next = selected and wb.we and not reading
-        avm_m0.read.next = selected and not wb.we and not reading
-        avm_m0.address.next, avm_m0.writedata.next, avm_m0.byteenable.next = wb.adr, wb.dat_w, wb.sel
+    request_write = assign(avm_m0.write, lambda: selected and wb.we and not reading)
+    request_read = assign(avm_m0.read, lambda: selected and not wb.we and not reading)
+    pass_on = assign((avm_m0.address, avm_m0.writedata, avm_m0.byteenable), lambda: (wb.adr, wb.dat_w, wb.sel))
 
     # reading: a read was accepted and is not answered yet.
     @always_seq(clk.posedge, reset=reset)

@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from myhdl import Signal, always, always_comb, always_seq, block, instances, intbv
+from myhdl import Signal, always, always_seq, block, instances, intbv
 
 from raycaster.hdl.given import load_words
 from raycaster.hdl.signals import bit
@@ -37,10 +37,8 @@ def word_memory(clk, reset, access, strobe, address, data, words: int, program: 
 
     loading = load_words(memory, program)
 
-    @always_comb
-    def start():
-        writing.next = access.select and (strobe != 0) and not done
-        reading.next = access.select and (strobe == 0) and not done
+    start_write = assign(writing, lambda: access.select and (strobe != 0) and not done)
+    start_read = assign(reading, lambda: access.select and (strobe == 0) and not done)
 
     @always(clk.posedge)
     def store():

@@ -82,10 +82,7 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
                 next_place.row.next = place.row
                 next_place.column_offset.next = place.column_offset + 1
 
-    @always(clk.posedge)
-    def aim():
-        column_slope.next = first_column - centre_column
-        row_slope.next = horizon_row - next_place.row
+    aim = register(clk, (column_slope, row_slope), lambda: (first_column - centre_column, horizon_row - next_place.row))
 
     # group_tester has two stages: the last rectangle's bit is valid when all_tested is high.
     @always(clk.posedge)
@@ -106,6 +103,7 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
             and (next_place.column_offset == place.column_offset)
         )
 
+    # At first predicted is unknown, which a conditional expression would pass on.
     @always(clk.posedge)
     def announce():
         if reset_ray_caster:

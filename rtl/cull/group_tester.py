@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
-from raycaster.hdl.verbs import assign, plus, times
+from raycaster.hdl.verbs import assign, plus, register, times
 
 
 @block
@@ -78,25 +78,15 @@ def group_tester(clk, load, facet, growth, start, column_slope, row_slope, may_h
     order_most_p = assign(most_p, lambda: start.low_p if back else start.high_p)
     order_least_q = assign(least_q, lambda: start.high_q if back else start.low_q)
     order_most_q = assign(most_q, lambda: start.low_q if back else start.high_q)
+    compare = assign(
+        (under_p, over_p, under_q, over_q),
+        lambda: (start.way_p < least_p, start.way_p > most_p, facet.way_q < least_q, facet.way_q > most_q),
+    )
 
-    @always_comb
-    def compare():
-        under_p.next = start.way_p < least_p
-        over_p.next = start.way_p > most_p
-        under_q.next = facet.way_q < least_q
-        over_q.next = facet.way_q > most_q
-
-    @always(clk.posedge)
-    def stage_1():
-        load_1.next, behind_1.next, turned_1.next = load, behind, end_back
-        same_way_1.next = back == end_back
-        under_p_1.next, over_p_1.next, under_q_1.next, over_q_1.next = under_p, over_p, under_q, over_q
-        way_p_1.next = end_way_p
-        low_p_1.next = end_low_p
-        high_p_1.next = end_high_p
-        low_q_1.next = end_low_q
-        high_q_1.next = end_high_q
-        way_q_1.next = facet.way_q
+    carry = register(clk, (load_1, behind_1, turned_1, same_way_1), lambda: (load, behind, end_back, back == end_back))
+    carry_sides = register(clk, (under_p_1, over_p_1, under_q_1, over_q_1), lambda: (under_p, over_p, under_q, over_q))
+    carry_p = register(clk, (way_p_1, low_p_1, high_p_1), lambda: (end_way_p, end_low_p, end_high_p))
+    carry_q = register(clk, (way_q_1, low_q_1, high_q_1), lambda: (facet.way_q, end_low_q, end_high_q))
 
     order_end_least_p = assign(end_least_p, lambda: high_p_1 if turned_1 else low_p_1)
     order_end_most_p = assign(end_most_p, lambda: low_p_1 if turned_1 else high_p_1)

@@ -106,15 +106,11 @@ def rect_setup(
                 number.next = number + 1
 
     fetch = assign((rects.fetch, rects.index), lambda: (reading, number))
-
-    @always(clk.posedge)
-    def follow():
-        asked.next = reading and not reset
-        at_hand.next = asked and not reset
-        at_hand_2.next = at_hand and not reset
-        number_0.next, number_1.next, number_2.next = number, number_0, number_1
-        usable_0.next = rects.usable[number]
-        usable.next, usable_2.next = usable_0, usable
+    follow = register(
+        clk, (asked, at_hand, at_hand_2), lambda: (reading and not reset, asked and not reset, at_hand and not reset)
+    )
+    carry_number = register(clk, (number_0, number_1, number_2), lambda: (number, number_0, number_1))
+    carry_usable = register(clk, (usable_0, usable, usable_2), lambda: (rects.usable[number], usable_0, usable))
 
     eyes, slopes = (camera.x, camera.y, camera.z), (slope.x, slope.y, slope.z)
     choices = [
@@ -125,10 +121,7 @@ def rect_setup(
         )
     ]  # fmt: skip
 
-    extend_plane = assign(plane, lambda: rects.rect.position)
-    extend_eye_a = assign(eye_a, lambda: camera_a)
-    extend_eye_p = assign(eye_p, lambda: camera_p)
-    extend_eye_q = assign(eye_q, lambda: camera_q)
+    extend = assign((plane, eye_a, eye_p, eye_q), lambda: (rects.rect.position, camera_a, camera_p, camera_q))
     extend_low_p = assign(low_p, lambda: rects.rect.v_low if rects.rect.axis == 2 else rects.rect.u_low)
     extend_high_p = assign(high_p, lambda: rects.rect.v_high if rects.rect.axis == 2 else rects.rect.u_high)
     extend_low_q = assign(low_q, lambda: rects.rect.u_low if rects.rect.axis == 2 else rects.rect.v_low)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """An encoder from the VGA output to the symbols of a DVI link."""
 
-from myhdl import always_comb, block, concat, instances
+from myhdl import block, concat, instances
 
 from raycaster.hdl.signals import bit, tied, unsigned
-from raycaster.hdl.verbs import register
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.dvi.tmds_encoder import tmds_encoder
 
 
@@ -33,10 +33,6 @@ def dvi_encoder(clk, pixel_end, vga, blue, green, red, pixel):
     red_channel = tmds_encoder(clk, pixel_end, data=vga.r, control=none, visible=vga.blank_n, symbol=red)
 
     mark = register(clk, marked, lambda: not marked, pixel_end)
-
-    @always_comb
-    def join():
-        syncs.next = concat(vga.vs, vga.hs)
-        pixel.next = marked
+    join = assign((syncs, pixel), lambda: (concat(vga.vs, vga.hs), marked))
 
     return instances()

@@ -51,8 +51,7 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
     turn = assign(turned, lambda: chained ^ 0xAA if chain_xnor else chained)
 
     keep_word = register(clk, word, lambda: concat(not chain_xnor, turned), enable)
-    keep_visible = register(clk, word_visible, lambda: visible, enable)
-    keep_control = register(clk, word_control, lambda: control, enable)
+    keep_kind = register(clk, (word_visible, word_control), lambda: (visible, control), enable)
 
     count = assign(word_ones, lambda: word[0] + word[1] + word[2] + word[3] + word[4] + word[5] + word[6] + word[7])
 

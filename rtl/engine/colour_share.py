@@ -51,11 +51,7 @@ def colour_share(clk, steps, found, found_mirror, share, missed, config: Configu
                 else:
                     passed_on.next = some
 
-        @always_comb
-        def keep():
-            share.next = weight - passed_on
-            left.next = passed_on
-
+        keep = assign((share, left), lambda: (weight - passed_on, passed_on))
         judge = assign(missed, lambda: weight == 0)
 
     else:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A step of a restoring division, for one quotient bit."""
 
-from myhdl import Signal, always_comb, block, concat, instances, intbv
+from myhdl import Signal, block, concat, instances, intbv
 
 from raycaster.hdl.signals import unsigned
 from raycaster.hdl.verbs import assign
@@ -28,14 +28,7 @@ def divider_step(remainder, digits, divisor, next_remainder, next_digits):
 
     # A negative difference means that the divisor does not fit.
     subtract = assign(difference, lambda: dividend - divisor)
-
-    @always_comb
-    def restore():
-        if difference < 0:
-            next_remainder.next = dividend[width:]
-            next_digits.next = concat(digits[count - 1 :], False)
-        else:
-            next_remainder.next = difference[width:]
-            next_digits.next = concat(digits[count - 1 :], True)
+    restore = assign(next_remainder, lambda: dividend[width:] if difference < 0 else difference[width:])
+    shift = assign(next_digits, lambda: concat(digits[count - 1 :], difference >= 0))
 
     return instances()

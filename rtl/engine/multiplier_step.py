@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A step of an array multiplication, for one digit."""
 
-from myhdl import always_comb, block, concat, instances
+from myhdl import block, concat, instances
 
 from raycaster.hdl.signals import Signed, signed
 from raycaster.hdl.verbs import assign, minus, plus
@@ -26,10 +26,8 @@ def multiplier_step(multiplicand, total, digits, next_total, next_digits, subtra
     added, add = (minus if subtract else plus)(total, addend, Signed(width + 1))
 
     select = assign(addend, lambda: multiplicand if digits[0] else 0)
-
-    @always_comb
-    def shift():
-        next_total.next = added[width + 1 : 1].signed()
-        next_digits.next = concat(added[0], digits[count:1])
+    shift = assign(
+        (next_total, next_digits), lambda: (added[width + 1 : 1].signed(), concat(added[0], digits[count:1]))
+    )
 
     return instances()

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The primary ray of a unit's column."""
 
-from myhdl import always, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import Signed, unsigned
-from raycaster.hdl.verbs import less, minus, plus, times
+from raycaster.hdl.verbs import less, minus, plus, register, times
 from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.widths import reached_column_bits, row_bits
 
@@ -43,12 +43,9 @@ def ray_generator(clk, steps, place, column_base, initial_signs, slope, config: 
 
     all_signs = initial_signs.joined(dx=False, dy=dy_negative, dz=dz_negative)
 
-    @always(clk.posedge)
-    def load():
-        if steps.screen_to_ray:
-            slope.dx.next = view_distance
-            slope.dy.next = dy_magnitude
-            slope.dz.next = dz_magnitude
-            initial_signs.word.next = all_signs
+    load_slope = register(
+        clk, (slope.dx, slope.dy, slope.dz), lambda: (view_distance, dy_magnitude, dz_magnitude), steps.screen_to_ray
+    )
+    load_signs = register(clk, initial_signs.word, lambda: all_signs, steps.screen_to_ray)
 
     return instances()

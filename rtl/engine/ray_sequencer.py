@@ -88,13 +88,10 @@ def ray_sequencer(
     see_end = assign(traced, lambda: (state == RayState.TRACE) and (not fetched) and (in_flight[write_at:] == 0))
 
     if config.light:
-
-        @always_comb
-        def wait_for_light():
-            shadow_pass.traced.next = traced
-            passed.next = traced and not shadow_pass.awaited
-            restart.next = start_ray or shadow_pass.start
-            stop.next = reset_ray_caster or shadow_pass.stop
+        wait_for_light = assign((shadow_pass.traced, passed), lambda: (traced, traced and not shadow_pass.awaited))
+        follow_light = assign(
+            (restart, stop), lambda: (start_ray or shadow_pass.start, reset_ray_caster or shadow_pass.stop)
+        )
 
     @always(clk.posedge)
     def advance():

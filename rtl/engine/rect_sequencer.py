@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, downrange, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, bits_for, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.widths import index_bits
 
 
@@ -53,12 +53,7 @@ def rect_sequencer(
                 others.next[i] = 0
 
     # The choice is registered before the fetch, so that choosing and reading have a cycle each.
-    @always(clk.posedge)
-    def offer():
-        if take or not fetched:
-            upcoming.next, waiting.next = lowest, others
-            offered.next = candidates != 0
-
+    offer = register(clk, (upcoming, waiting, offered), lambda: (lowest, others, candidates != 0), take or not fetched)
     ask = assign((index, fetch), lambda: (upcoming, take))
 
     @always(clk.posedge)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The colour of a point in the light or in the dark."""
 
-from myhdl import always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import CHANNEL_BITS
 from raycaster.hdl.signals import unsigned
@@ -25,12 +25,7 @@ def shade_colour(colour, dark, shade, shaded):
     seen = Colour()
     dim = seen.joined(red=red(CHANNEL_BITS + 2, 2), green=green(CHANNEL_BITS + 2, 2), blue=blue(CHANNEL_BITS + 2, 2))
 
-    @always_comb
-    def multiply():
-        red.next = shade * colour.red
-        green.next = shade * colour.green
-        blue.next = shade * colour.blue
-
+    multiply = assign((red, green, blue), lambda: (shade * colour.red, shade * colour.green, shade * colour.blue))
     choose = assign(shaded, lambda: dim if dark else colour.word)
 
     return instances()

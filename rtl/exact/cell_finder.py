@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS
 from raycaster.hdl.signals import bit, signed, unsigned
-from raycaster.hdl.verbs import register
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.widths import PLACE_BITS, SMALLEST_CELL_BITS
 from raycaster.rtl.engine.divider_step import divider_step
 from raycaster.rtl.exact.hit_component import hit_component
@@ -53,10 +53,8 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
     second_step = divider_step(remainder_1, digits_1, found_slope, remainder_2, digits_2)
 
     # u is x except on a rectangle across x, and v is z except on one across z.
-    @always_comb
-    def see_axis():
-        on_x.next = (not steps.store_quotient) and (found_surface.axis != 0)
-        on_z.next = steps.store_quotient and (found_surface.axis != 2)
+    see_x = assign(on_x, lambda: (not steps.store_quotient) and (found_surface.axis != 0))
+    see_z = assign(on_z, lambda: steps.store_quotient and (found_surface.axis != 2))
 
     @always_comb
     def choose_axis():

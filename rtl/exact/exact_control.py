@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The control that operates all units of the exact engine in lockstep."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unconnected, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.common.records import Surface
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
@@ -69,16 +69,14 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
     if config.patterns:
         load_at, store_at = WRITE_AT + 1, WRITE_AT + 1 + DIVISION_CYCLES
 
-        @always_comb
-        def operate_divider():
-            steps.load_divider.next = in_flight[load_at] and not from_light
-            steps.store_quotient.next = in_flight[store_at] and (in_flight[store_at:] == 0) and not from_light
+        load = assign(steps.load_divider, lambda: in_flight[load_at] and not from_light)
+        store = assign(
+            steps.store_quotient, lambda: in_flight[store_at] and (in_flight[store_at:] == 0) and not from_light
+        )
 
     # The surface is delayed along with its tests here, once for all units.
-    @always(clk.posedge)
-    def carry_surface():
-        first.word.next = rects.rect.surface
-        second.word.next = first.word
-        offered.word.next = second.word
+    carry_surface = register(
+        clk, (first.word, second.word, offered.word), lambda: (rects.rect.surface, first.word, second.word)
+    )
 
     return instances()

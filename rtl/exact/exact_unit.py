@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A unit of the exact engine: a ray, its nearest hit, its reflections, and the colour of its pixel."""
 
-from myhdl import always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, unconnected, unsigned
@@ -50,7 +50,7 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
     at_mirror = bit()
     found_at_mirror = bit() if mirror.has("met_x") else unconnected(1)
     hit, found = bit(), bit()
-    missed = bit() if config.culling or config.materials or config.light else unconnected(1)
+    missed = bit() if config.follows_fate or config.light else unconnected(1)
     numerator, found_distance = (unsigned(eye_distance_bits(config)) for _ in range(2))
     slope_bits = exact_slope_bits(config)
     denominator = unsigned(slope_bits)
@@ -125,12 +125,8 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
 
         # The slope of a unit's own ray fits fewer bits.
         narrow = assign(denominator, lambda: tested_denominator[slope_bits:])
-
-        @always_comb
-        def judge_light():
-            dark.next = camera.light_on and ((not facing) or shaded)
-            fate.in_question.next = camera.light_on and found and facing and (not shaded) and not missed
-
+        see_dark = assign(dark, lambda: camera.light_on and ((not facing) or shaded))
+        ask = assign(fate.in_question, lambda: camera.light_on and found and facing and (not shaded) and not missed)
         look = assign(lit_colour.word, lambda: colour)
 
     # Hits after a ray has ended do not count.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A test of a ray against a rectangle's two bounds on one axis."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
 from raycaster.hdl.verbs import assign, minus, register, times
@@ -60,15 +60,12 @@ def extent_tester(
     look_ahead = assign(ahead, lambda: not to_far[distance_bits])
 
     # passed_1: the near bound is behind the eye.
-    @always(clk.posedge)
-    def stage_1():
-        if step:
-            slope_1.next = slope
-            to_near_1.next = to_near[distance_bits:]
-            to_far_1.next = to_far[distance_bits:]
-            passed_1.next = to_near[distance_bits]
-            on_mirror_1.next = on_mirror
-
+    stage_1 = register(
+        clk,
+        (slope_1, to_near_1, to_far_1, passed_1, on_mirror_1),
+        lambda: (slope, to_near[distance_bits:], to_far[distance_bits:], to_near[distance_bits], on_mirror),
+        step,
+    )
     clip = assign(clips, lambda: on_mirror_1 and (passed_1 or (to_near_1 <= mirror_distance)))
     choose_first = assign(first, lambda: mirror_distance if clips else to_near_1)
     choose_behind = assign(behind, lambda: passed_1 and not clips)
@@ -79,9 +76,7 @@ def extent_tester(
         lambda: (way, way_to_near, way_to_far, behind, clips),
     )
 
-    @always_comb
-    def compare():
-        between.next = (behind_2 or (way_to_near_2 <= way_2)) and (way_2 <= way_to_far_2)
-        in_mirror.next = clips_2 and (way_to_near_2 == way_2)
+    compare = assign(between, lambda: (behind_2 or (way_to_near_2 <= way_2)) and (way_2 <= way_to_far_2))
+    see_mirror = assign(in_mirror, lambda: clips_2 and (way_to_near_2 == way_2))
 
     return instances()

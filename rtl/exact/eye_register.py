@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The mirrored eye."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, concat, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.records import Record
@@ -55,11 +55,7 @@ def eye_register(
 
     on_axis = by_axis(found_surface.axis, eye.x, eye.y, eye.z, mirrored, width=len(mirrored))
 
-    @always_comb
-    def double():
-        twice.next = 0
-        twice.next[COORDINATE_BITS + 1 : 1] = found_surface.position
-
+    double = assign(twice, lambda: concat(found_surface.position, False))
     extend = assign(twice_signed, lambda: twice)
 
     # The image fits after every mirror except the last, after which it is don't care.
@@ -83,12 +79,9 @@ def eye_register(
                 flipped_z.next = not flipped_z
 
     if mirror.has("met_x"):
-
-        @always_comb
-        def meet():
-            met_x.next = (found_surface.axis == 0) or (found_at_mirror and mirror.met_x)
-            met_y.next = (found_surface.axis == 1) or (found_at_mirror and mirror.met_y)
-            met_z.next = (found_surface.axis == 2) or (found_at_mirror and mirror.met_z)
+        meet_x = assign(met_x, lambda: (found_surface.axis == 0) or (found_at_mirror and mirror.met_x))
+        meet_y = assign(met_y, lambda: (found_surface.axis == 1) or (found_at_mirror and mirror.met_y))
+        meet_z = assign(met_z, lambda: (found_surface.axis == 2) or (found_at_mirror and mirror.met_z))
 
     left = mirror.joined(
         active=True, axis=found_surface.axis, distance=found_distance, met_x=met_x, met_y=met_y, met_z=met_z
@@ -101,11 +94,10 @@ def eye_register(
         elif steps.store_ray:
             mirror.word.next = left
 
-    @always_comb
-    def flip_signs():
-        dx.next = initial_signs.dx != flipped_x
-        dy.next = initial_signs.dy != flipped_y
-        dz.next = initial_signs.dz != flipped_z
+    flip_signs = assign(
+        (dx, dy, dz),
+        lambda: (initial_signs.dx != flipped_x, initial_signs.dy != flipped_y, initial_signs.dz != flipped_z),
+    )
 
     all_signs = signs.joined(dx=dx, dy=dy, dz=dz)
     join_signs = assign(signs.word, lambda: all_signs)

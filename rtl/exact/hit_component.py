@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A component of the hit point, times the slope towards its plane: a whole number."""
 
-from myhdl import always_comb, block, concat, instances
+from myhdl import block, concat, instances
 
 from raycaster.hdl.signals import Signed, signed, unsigned
 from raycaster.hdl.verbs import assign, times
@@ -32,11 +32,7 @@ def hit_component(eye, back, slope, distance, e, component):
     turn_way = assign(flipped_way, lambda: ~way if back else way)
 
     # An extra lowest bit carries in the 1 that completes the two's complement.
-    @always_comb
-    def add_carry():
-        from_eye.next = concat(position[bits:], True)
-        along.next = concat(flipped_way[bits:], back)
-
+    add_carry = assign((from_eye, along), lambda: (concat(position[bits:], True), concat(flipped_way[bits:], back)))
     add = assign(total, lambda: (from_eye + along) % (1 << (bits + 1)))
     leave_carry = assign(component, lambda: total[bits + 1 : 1])
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A test of a ray against a rectangle, by cross-multiplication: no quotient, no rounding."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import Signed, bit, signed, unsigned
@@ -92,20 +92,17 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
         )
     ]  # fmt: skip
 
-    @always_comb
-    def place_mirror():
-        mirror_on_x.next = mirror.active and (mirror.axis == 0)
-        mirror_on_y.next = mirror.active and (mirror.axis == 1)
-        mirror_on_z.next = mirror.active and (mirror.axis == 2)
-
+    place_x = assign(mirror_on_x, lambda: mirror.active and (mirror.axis == 0))
+    place_y = assign(mirror_on_y, lambda: mirror.active and (mirror.axis == 1))
+    place_z = assign(mirror_on_z, lambda: mirror.active and (mirror.axis == 2))
     extend = assign(position, lambda: rect.position)
     complement_plane = assign(plane, lambda: ~position if back else position)
     complement_flipped_eye = assign(flipped_eye, lambda: ~eye_a if back else eye_a)
 
     # The plane is ahead of the eye and not parallel to the ray, and no far bound is behind the eye.
-    @always_comb
-    def judge_plane():
-        crosses.next = (not n[distance_bits]) and (n[distance_bits:] != 0) and (e != 0) and ahead_u and ahead_v
+    judge_plane = assign(
+        crosses, lambda: (not n[distance_bits]) and (n[distance_bits:] != 0) and (e != 0) and ahead_u and ahead_v
+    )
 
     measured = seen_1.joined(crosses=crosses, mirror_on_a=mirror_on_a, met=met, n=n(distance_bits, 0), e=e)
     clipped = seen_2.joined(crosses=beyond, met=seen_1.met, n=seen_1.n, e=seen_1.e)
@@ -114,10 +111,7 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
     clip = assign(beyond, lambda: seen_1.crosses and ((not seen_1.mirror_on_a) or (seen_1.n > mirror.distance)))
     stage_2 = register(clk, seen_2.word, lambda: clipped)
     compare_with_mirror = assign(in_mirror, lambda: in_mirror_u or in_mirror_v)
-
-    @always(clk.posedge)
-    def stage_3():
-        hit.next = seen_2.crosses and inside_u and inside_v and not (seen_2.met and in_mirror)
-        at_mirror.next, numerator.next, denominator.next = in_mirror, seen_2.n, seen_2.e
+    judge = register(clk, hit, lambda: seen_2.crosses and inside_u and inside_v and not (seen_2.met and in_mirror))
+    stage_3 = register(clk, (at_mirror, numerator, denominator), lambda: (in_mirror, seen_2.n, seen_2.e))
 
     return instances()

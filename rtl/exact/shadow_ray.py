@@ -81,12 +81,7 @@ def shadow_ray(
     )  # fmt: skip
 
     stage_2 = register(clk, sum_2, lambda: aimed)
-
-    @always_comb
-    def invert():
-        back_2.next = sum_2[light_bits]
-        inverse.next = ~sum_2
-
+    invert = assign((back_2, inverse), lambda: (sum_2[light_bits], ~sum_2))
     negate = assign(negated, lambda: (inverse + 1) % (1 << sum_bits))
     measure_slope = assign(magnitude, lambda: negated[light_bits:] if back_2 else sum_2[light_bits:])
 
@@ -99,12 +94,9 @@ def shadow_ray(
         if steps.aim[3]:
             shadow_slope.dz.next, dz.next = magnitude, back_2
 
-    @always(clk.posedge)
-    def judge_side():
-        if back_a:
-            facing.next = light_a > found_surface.position
-        else:
-            facing.next = light_a < found_surface.position
+    judge_side = register(
+        clk, facing, lambda: light_a > found_surface.position if back_a else light_a < found_surface.position
+    )
 
     all_signs = shadow_signs.joined(dx=dx, dy=dy, dz=dz)
     join_signs = assign(shadow_signs.word, lambda: all_signs)

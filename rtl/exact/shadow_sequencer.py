@@ -50,11 +50,7 @@ def shadow_sequencer(clk, reset_ray_caster, shadow_pass, any_in_question, aim, f
         elif shadow_pass.traced:
             state.next = ShadowState.WAIT
 
-    @always_comb
-    def see_end():
-        aimed.next = cycle[last]
-        decided.next = (state == ShadowState.TEST) and not any_in_question
-
+    see_end = assign((aimed, decided), lambda: (cycle[last], (state == ShadowState.TEST) and not any_in_question))
     operate_aim = assign(aim, lambda: cycle if state == ShadowState.AIM else 0)
     operate_from_light = assign(from_light, lambda: state == ShadowState.TEST)
 

@@ -61,11 +61,10 @@ def camera_mem(clk, reset, bus, readback, camera):
         forward_word, right_word, up_word = shadows[1:4]
         forward_address, right_address, up_address = map(bus.address_of, registers[1:4])
 
-        @always_comb
-        def decode_basis():
-            select_forward.next = bus.address == forward_address
-            select_right.next = bus.address == right_address
-            select_up.next = bus.address == up_address
+        decode_basis = assign(
+            (select_forward, select_right, select_up),
+            lambda: (bus.address == forward_address, bus.address == right_address, bus.address == up_address),
+        )
 
         @always_comb
         def read():

@@ -123,15 +123,9 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
             else:
                 readback.next = pattern_word
 
-    @always_comb
-    def select_word():
-        mask_0.next = mask_1.next = mask_2.next = 0
-        if bus.address[2:] == 0:
-            mask_0.next = bus.mask
-        elif bus.address[2:] == 1:
-            mask_1.next = bus.mask
-        elif bus.address[2:] == 2:
-            mask_2.next = bus.mask
+    select_0 = assign(mask_0, lambda: bus.mask if bus.address[2:] == 0 else 0)
+    select_1 = assign(mask_1, lambda: bus.mask if bus.address[2:] == 1 else 0)
+    select_2 = assign(mask_2, lambda: bus.mask if bus.address[2:] == 2 else 0)
 
     if mask.has("pattern"):
         select_pattern = assign(mask_3, lambda: bus.mask if bus.address[2:] == 3 else 0)
@@ -165,10 +159,8 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     find_copies = assign(latest_copies.word, lambda: copies_words[latest_index])
 
     # StartScreen makes the pending bank live, so these two are enough. No commit comes while a rectangle is stored.
-    @always_comb
-    def find_kept():
-        kept_0.next = (latest_copies.pending == 0) or (latest_copies.live == 0)
-        kept_1.next = (latest_copies.pending == 1) or (latest_copies.live == 1)
+    find_kept_0 = assign(kept_0, lambda: (latest_copies.pending == 0) or (latest_copies.live == 0))
+    find_kept_1 = assign(kept_1, lambda: (latest_copies.pending == 1) or (latest_copies.live == 1))
 
     @always_comb
     def choose_place():
@@ -178,18 +170,11 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
         elif kept_0:
             bank.next = 1
 
-    @always_comb
-    def address():
-        write_address.next = concat(bank, latest_index)
-        read_address.next = concat(read_copies.live, rects.index)
-
+    address = assign(
+        (write_address, read_address), lambda: (concat(bank, latest_index), concat(read_copies.live, rects.index))
+    )
     store_sorted = register(clk, banks[write_address], lambda: sorted_rect.word, storing)
-
-    @always_comb
-    def show_slots():
-        bad_rectangle.next = bad != 0
-        rects.usable.next = usable
-
+    show_slots = assign((bad_rectangle, rects.usable), lambda: (bad != 0, usable))
     find_live = assign(read_copies.word, lambda: copies_words[rects.index])
 
     # No usable rectangle is in a bank that is being written.

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The iterative divider: one, two or three quotient bits per cycle."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.widths import SLOPE_BITS, position_bits, product_bits
 from raycaster.rtl.engine.divider_step import divider_step
 
@@ -58,12 +58,7 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
             remainder.next, pending.next = last_remainder, last_pending
 
     if not round_to_nearest:
-
-        @always(clk.posedge)
-        def store():
-            if store_quotient:
-                quotient.next = last_pending[quotient_width:]
-                overflow.next = too_large
+        store = register(clk, (quotient, overflow), lambda: (last_pending[quotient_width:], too_large), store_quotient)
 
         return instances()
 
@@ -72,10 +67,7 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
     truncated_overflow, round_up = bit(), bit()
     rounded = unsigned(quotient_width + 1)
 
-    @always_comb
-    def double_remainder():
-        twice_remainder.next = 0
-        twice_remainder.next[SLOPE_BITS + 1 : 1] = last_remainder
+    double_remainder = assign(twice_remainder, lambda: concat(last_remainder, False))
 
     # A remainder of half the divisor or more rounds up.
     @always(clk.posedge)
@@ -87,10 +79,8 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
 
     # Rounding follows the register, and may carry into one more bit.
     round_quotient = assign(rounded, lambda: truncated + round_up)
-
-    @always_comb
-    def deliver():
-        quotient.next = rounded[quotient_width:]
-        overflow.next = truncated_overflow or rounded[quotient_width]
+    deliver = assign(
+        (quotient, overflow), lambda: (rounded[quotient_width:], truncated_overflow or rounded[quotient_width])
+    )
 
     return instances()

@@ -69,12 +69,9 @@ def intersection_finder(
     # Scene coordinates are whole units; here they get the fraction bits of origins.
     @always_comb
     def align():
-        plane_start.next = rect.position << fraction_bits
-        plane_finish.next = offered.position << fraction_bits
-        u_low.next = offered.u_low << fraction_bits
-        u_high.next = offered.u_high << fraction_bits
-        v_low.next = offered.v_low << fraction_bits
-        v_high.next = offered.v_high << fraction_bits
+        plane_start.next, plane_finish.next = rect.position << fraction_bits, offered.position << fraction_bits
+        u_low.next, u_high.next = offered.u_low << fraction_bits, offered.u_high << fraction_bits
+        v_low.next, v_high.next = offered.v_low << fraction_bits, offered.v_high << fraction_bits
 
     # The plane's axis selects the divisor (e, with d), the factor (b) and, for the rectangle whose quotients leave the
     # dividers, the addend (a).

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A unit for a + b * (c - d) / e: one coordinate of the point where a ray meets a plane."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.records import Record
@@ -88,16 +88,9 @@ def intersection_helper(
     multiply = register(clk, product, lambda: started_b * started.distance)
 
     # If the quotient overflows, the point is outside the world.
-    @always_comb
-    def judge():
-        towards.next, distance.next = started.towards, stored.distance
-        valid.next = stored.towards and not overflow
-
-    @always(clk.posedge)
-    def add():
-        if stored.negative:
-            value.next = backward
-        else:
-            value.next = forward
+    judge = assign(
+        (towards, distance, valid), lambda: (started.towards, stored.distance, stored.towards and not overflow)
+    )
+    add = register(clk, value, lambda: backward if stored.negative else forward)
 
     return instances()

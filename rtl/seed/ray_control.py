@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The control that operates all units of the seed engine in lockstep."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, tied, unsigned
@@ -51,11 +51,10 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
         rect_cycles=config.divider_steps, config=config,
     )  # fmt: skip
 
-    @always_comb
-    def operate_stages():
-        steps.load_divider.next = in_flight[load_at]
-        steps.store_quotient.next = in_flight[store_at]
-        steps.write_z_buf.next = in_flight[write_at]
+    operate_stages = assign(
+        (steps.load_divider, steps.store_quotient, steps.write_z_buf),
+        lambda: (in_flight[load_at], in_flight[store_at], in_flight[write_at]),
+    )
 
     # The rectangle is delayed along with its division here, once for all units.
     @always(clk.posedge)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The register of the reflected ray."""
 
-from myhdl import always_comb, block, instances
+from myhdl import block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.records import Record
 from raycaster.hdl.signals import bit
-from raycaster.hdl.verbs import register
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.records import Signs
 from raycaster.rtl.common.widths import position_bits
 
@@ -40,11 +40,9 @@ def ray_mem(clk, steps, found_axis, found_point, ray, reflected):
     """
     dx, dy, dz = bit(), bit(), bit()
 
-    @always_comb
-    def reflect():
-        dx.next = ray.dx != (found_axis == 0)
-        dy.next = ray.dy != (found_axis == 1)
-        dz.next = ray.dz != (found_axis == 2)
+    reflect = assign(
+        (dx, dy, dz), lambda: (ray.dx != (found_axis == 0), ray.dy != (found_axis == 1), ray.dz != (found_axis == 2))
+    )
 
     left = reflected.joined(x=found_point.x, y=found_point.y, z=found_point.z, dx=dx, dy=dy, dz=dz)
     store = register(clk, reflected.word, lambda: left, steps.store_ray)

@@ -44,7 +44,7 @@ def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pix
     point, found_point = Origin(config), Origin(config)
     hit, found = bit(), bit()
     towards = bit() if ends_early(config) else unconnected(1)
-    missed = bit() if config.culling or config.materials else unconnected(1)
+    missed = bit() if config.follows_fate else unconnected(1)
     depth = unsigned(position_bits(config))
     found_axis, found_colour = unsigned(AXIS_BITS), unsigned(RGB_BITS)
     found_mirror = unsigned(MIRROR_BITS) if config.materials else tied(0, MIRROR_BITS)

@@ -5,7 +5,7 @@ from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.widths import position_bits
 
 
@@ -48,10 +48,8 @@ def z_buffer(
             found_point.word.next = point.word
 
     if offered.has("mirror"):
-
-        @always(clk.posedge)
-        def keep_mirror():
-            if steps.write_z_buf and nearer and not steps.reset_z_buf:
-                found_mirror.next = offered.mirror
+        keep_mirror = register(
+            clk, found_mirror, lambda: offered.mirror, steps.write_z_buf and nearer and not steps.reset_z_buf
+        )
 
     return instances()

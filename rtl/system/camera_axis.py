@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """A coordinate of a camera that buttons move."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, block, instances
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.hdl.signals import bit
+from raycaster.hdl.verbs import assign
 
 STEP = 3
 """World units that a held button moves the camera per frame: across the world in about three seconds."""
@@ -25,10 +26,9 @@ def camera_axis(clk, reset, move, more, less, start, position):
     most = WORLD_SIZE - 1 - STEP
     can_rise, can_fall = bit(), bit()
 
-    @always_comb
-    def look_ahead():
-        can_rise.next = more and not less and position <= most
-        can_fall.next = less and not more and position >= STEP
+    look_ahead = assign(
+        (can_rise, can_fall), lambda: (more and not less and position <= most, less and not more and position >= STEP)
+    )
 
     @always(clk.posedge)
     def step():

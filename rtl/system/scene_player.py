@@ -82,10 +82,7 @@ def scene_player(clk, reset, buttons, irq, avm_m0: AvalonPort, config: Configura
             else:
                 entry.next = entry + 1
 
-    @always_comb
-    def look_up():
-        avm_m0.address.next = addresses[int(entry)]
-        word.next = words[int(entry)]
+    look_up = assign((avm_m0.address, word), lambda: (addresses[int(entry)], words[int(entry)]))
 
     # The camera's word is the only one that is not constant.
     @always_comb

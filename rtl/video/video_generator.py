@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The timing of the monitor, which drives the whole design."""
 
-from myhdl import Signal, always, always_comb, always_seq, block, instances, intbv
+from myhdl import Signal, always_comb, always_seq, block, instances, intbv
 
 from raycaster.hdl.signals import bit, bits_for, tied, unsigned
-from raycaster.hdl.verbs import assign
+from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.video.pixel_clock import pixel_clock
 from raycaster.screens import Screen
 
@@ -103,12 +103,9 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0)
         scan.next_column.next = pixel_end and in_columns and (pixel_repeat == last_repeat)
 
     # A register, since the whole scene changes with it.
-    @always(clk.posedge)
-    def announce_screen():
-        if reset:
-            scan.start_screen.next = screen_first
-        else:
-            scan.start_screen.next = line_end and (y == line_before_screen)
+    announce_screen = register(
+        clk, scan.start_screen, lambda: screen_first if reset else line_end and (y == line_before_screen)
+    )
 
     @always_seq(clk.posedge, reset=reset)
     def synchronise():

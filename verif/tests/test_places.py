@@ -68,6 +68,18 @@ def test_a_copy_without_links_is_not_installed(tmp_path: Path):
     assert links_complaint(tmp_path) == ""
 
 
+def test_the_program_reports_lost_links(tmp_path: Path):
+    shutil.copytree(ROOT / "raycaster", tmp_path / "raycaster", symlinks=True)
+    for link in filter(Path.is_symlink, (tmp_path / "raycaster").iterdir()):
+        link.unlink()
+        (tmp_path / link.name).mkdir()
+        (tmp_path / link.name / "__init__.py").touch()
+    options = [sys.executable, "-m", "raycaster.cli", "options"]
+    done = subprocess.run(options, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), done.stderr
+    assert done.stderr.startswith("error: ") and done.stderr.endswith("git clone -c core.symlinks=true\n")
+
+
 ODD = "it's my $x é%(1);&#*?[a]{b}!`~=,<|>"
 """Name of a directory in which all that users run works."""
 

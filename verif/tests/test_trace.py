@@ -284,7 +284,7 @@ FAULTS = {
     "exact-materials-patterns-light": [
         ("cell_finder", "digits <= point[8:3]", "digits <= ~point[8:3]"),
         ("pattern_colour", "second = odd_u != odd_v", "second = odd_u"),
-        ("shadow_ray", "facing <= light_a < found_surface_position", "facing <= light_a > found_surface_position"),
+        ("shadow_ray", "(light_a < found_surface_position)", "(light_a > found_surface_position)"),
         ("shadow_sequencer", "shadow_pass_start = (state == AIM)", "shadow_pass_start = (state == WAIT)"),
         ("ray_switch", "$signed({1'b0, camera_light_y})", "eye_y"),
         ("shadow_register", "reached < denominator", "reached > denominator"),
