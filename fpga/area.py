@@ -126,7 +126,7 @@ def show_chips(areas: Mapping[str, Area], console: Console) -> None:
 def route(config: Configuration, seed: int, directory: Path, console: Console) -> dict[str, Any]:
     """Place and route the module alone, on an LFE5U-85F-6, with a pad at each port; print cells, clock and worst path.
 
-    A missed clock is not routed again, as that takes longer and may never end.
+    A missed clock is routed again within a time limit, as in `place_and_route`.
 
     Args:
         config: configuration of the design.
@@ -150,7 +150,7 @@ def route(config: Configuration, seed: int, directory: Path, console: Console) -
     netlist = write_netlist(flow, sources, TOP, board.multipliers, directory)
     aim = round(config.screen_geometry.clock_hz / 1e6 * SPARE, 2)
     command = [flow.programs[0], *board.options, "--json", netlist.name, "--lpf-allow-unconstrained", *ECP5_EFFORT]
-    done = place_and_route([*command, "--freq", str(aim), "--seed", str(seed)], (), directory)
+    done = place_and_route([*command, "--freq", str(aim), "--seed", str(seed)], flow.again, directory)
     if done.returncode:
         raise UserError(f"{done.args[0]}: it failed; the log is {directory / 'nextpnr.log'}")
     report = directory / "report.json"

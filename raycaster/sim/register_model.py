@@ -398,7 +398,8 @@ class LiveScene:
         """Return the cycles in which a design draws the scene into a list; see `raycaster.golden.frames`."""
         screen = config.screen_geometry
         model = SpanModel(
-            self.rectangles, self.camera, self.background, screen.columns, self.reflections, self.light, config.varied
+            self.rectangles, self.camera, self.background, screen.columns, self.reflections, self.light,
+            patterns=config.patterns, lights=config.light,
         )  # fmt: skip
         return cycles_of(model.rows(screen, self.basis), config)
 

@@ -101,8 +101,8 @@ module frame_list (
     output wire                   take_scene,
     output wire                   stop,
     output reg                    first_row,
-    output wire                   next_row,
-    output wire                   start,
+    output reg                    next_row,
+    output reg                    start,
     input  wire                   done,
     input  wire                   valid,
     input  wire [`ENTRY_BITS-1:0] runs,
@@ -126,11 +126,11 @@ reg [7:0] skip;
 reg [15:0] next, row;
 wire rows_left = next != `ROWS;
 wire idle = !drawing || done;
-wire working = start || (drawing && !done);
+wire deals = rows_left && idle && skip == 0;
+wire passes = rows_left && skip != 0;
+wire working = deals || (drawing && !done);
 
 assign take_scene = scan_start_screen;
-assign start = rows_left && idle && skip == 0;
-assign next_row = start || (rows_left && skip != 0);
 assign ready = 1'b1;
 assign busy = new_frame || first_row || settles || rows_left || drawing;
 assign stop = 1'b0;
@@ -144,22 +144,26 @@ always @(posedge clk) begin
         first_row <= 1'b0;
         settles <= 1'b0;
         drawing <= 1'b0;
+        start <= 1'b0;
+        next_row <= 1'b0;
         next <= `ROWS;
     end
     else begin
         new_frame <= scan_start_screen;
         first_row <= new_frame && run;
         settles <= first_row;
-        drawing <= start || (drawing && !done);
+        drawing <= working;
+        start <= deals;
+        next_row <= deals || passes;
         if (settles) begin
             next <= 0;
             skip <= machine.skipped;
         end
-        else if (next_row) begin
+        else if (deals || passes) begin
             next <= next + 1;
             skip <= skip == 0 ? machine.stride - 1 : skip - 1;
         end
-        if (start)
+        if (deals)
             row <= next;
     end
 end

@@ -27,7 +27,7 @@ from raycaster.fpga.area import ROOM_DESIGNS
 from raycaster.fpga.board import OpenBoard, board_names, find_board
 from raycaster.fpga.flows import largest_list
 from raycaster.golden.exact import ExactModel
-from raycaster.golden.frames import FIRST_START
+from raycaster.golden.frames import FIRST_DEAL
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.output import Console, replaced
 from raycaster.play.system import FASTEST
@@ -122,7 +122,7 @@ def _build(model: Model, build: Path) -> tuple[bytes, dict[str, Any]]:
         **{name: getattr(config, name) for name in ("rectangles", "reflections", "fraction_bits")},
         **{name: getattr(screen, name) for name in ("columns", "rows", "horizon_row", "scale", "doubling")},
         "draws": model.draws,
-        "first_start": FIRST_START,
+        "first_deal": FIRST_DEAL,
         **({"taps": tap_facts(config), "monitor": _monitor(screen)} if model.taps else {}),
     }
 

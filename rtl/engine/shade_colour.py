@@ -7,6 +7,7 @@ from raycaster.configuration import CHANNEL_BITS
 from raycaster.hdl.signals import unsigned
 from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.records import Colour
+from raycaster.rtl.engine.quarters_of import QUARTERS_BITS, quarters_of
 
 
 @block
@@ -19,13 +20,15 @@ def shade_colour(colour, dark, shade, shaded):
         shade: unsigned, 2 bits; the quarters that remain in the dark.
         shaded: unsigned output, 24 bits; red, green and blue of the point.
     """
-    channels = (colour.red, colour.green, colour.blue)
-    products = [unsigned(CHANNEL_BITS + 2) for _ in channels]
-    red, green, blue = products
-    seen = Colour()
-    dim = seen.joined(red=red(CHANNEL_BITS + 2, 2), green=green(CHANNEL_BITS + 2, 2), blue=blue(CHANNEL_BITS + 2, 2))
+    quarters, seen = unsigned(QUARTERS_BITS), Colour()
+    red, green, blue = (unsigned(CHANNEL_BITS) for _ in range(3))
 
-    multiply = assign((red, green, blue), lambda: (shade * colour.red, shade * colour.green, shade * colour.blue))
-    choose = assign(shaded, lambda: dim if dark else colour.word)
+    choose = assign(quarters, lambda: shade if dark else 4)
+    parts = [
+        quarters_of(whole=whole, quarters=quarters, share=share)
+        for whole, share in ((colour.red, red), (colour.green, green), (colour.blue, blue))
+    ]
+    joined = seen.joined(red=red, green=green, blue=blue)
+    show = assign(shaded, lambda: joined)
 
     return instances()

@@ -114,9 +114,10 @@ def cell_walker(
         number=asked_number,
     )  # fmt: skip
 
-    @always_comb
+    # It is far from a surface to the evaluator.
+    @always(clk.posedge)
     def request():
-        asks.ask.next = state == WalkState.ASK
+        asks.ask.next = (state == WalkState.ASK) and not reset
         asks.query.word.next = asked
 
     @always(clk.posedge)

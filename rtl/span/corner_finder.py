@@ -23,7 +23,7 @@ def corner_finder(
 
     Args:
         reset: flag; synchronous reset.
-        start: strobe; if needed, the line is asked for.
+        start: strobe; if needed, the line is asked for in the next cycle.
         chain: `Chain`; constant from start to done, like all other inputs of the span.
         winner: `Entry` that is seen in the span.
         column: unsigned, `column_bits` bits; the span's first column.
@@ -60,13 +60,11 @@ def corner_finder(
         number=no_number,
     )  # fmt: skip
 
-    @always_comb
-    def request():
-        asks.ask.next = start and needed
-        asks.query.word.next = asked
+    show_query = assign(asks.query.word, lambda: asked)
 
     @always(clk.posedge)
     def await_answer():
+        asks.ask.next = start and needed and not reset
         if reset:
             waiting.next = False
         elif start:

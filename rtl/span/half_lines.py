@@ -72,7 +72,7 @@ def half_lines(
     asked_axis = unsigned(AXIS_BITS)
     waiting, others = unsigned(count), unsigned(count)
     lowest, upcoming, index = (unsigned(index_width) for _ in range(3))
-    offered, at_hand, passes, weighed, take, fetch, moving = (bit() for _ in range(7))
+    offered, at_hand, passes, weighed, take, fetch, taking, moving = (bit() for _ in range(8))
     fore_left, fore_right, aft_left, aft_right = (unsigned(3) for _ in range(4))
     may_vanish = bit()
 
@@ -168,17 +168,18 @@ def half_lines(
         passes.next = at_hand and (take or not weighed)
         fetch.next = offered and (seeing or walking) and ((not at_hand) or take or not weighed)
 
-    # The first rectangle is chosen in the cycle after start, which comes late in its own cycle.
+    # The strobe start comes late in its cycle: in the next one the rectangles are taken, then the first one is chosen.
     @always_comb
     def show_fetch():
-        moving.next = fetch or (seeing and asked_axis == 0)
+        taking.next = seeing and asked_axis == 0
+        moving.next = fetch or (seeing and asked_axis == 1)
         rects.index.next, rects.fetch.next = upcoming, fetch
 
     @always(clk.posedge)
     def offer():
         if reset:
             offered.next = False
-        elif start:
+        elif taking:
             waiting.next = rects.usable
         elif moving:
             offered.next = waiting != 0

@@ -21,8 +21,9 @@ def row_dealer(clk, reset, new_frame, room, done, first_row, next_row, start, ro
         room: unsigned, a bit for each unit; high if the unit may start a row.
         done: unsigned, a bit for each unit; strobe of a unit that has drawn its row.
         first_row: output strobe, as in `row_slope`; in the cycle after new_frame.
-        next_row: output strobe, as in `row_slope`; with each start. The first one comes two cycles after first_row.
-        start: unsigned output, a bit for each unit; strobe, the unit takes the present row.
+        next_row: output strobe, as in `row_slope`; with each start. The first one comes three cycles after first_row.
+        start: unsigned output, a bit for each unit; strobe, the unit takes the present row. In the cycle after the row
+            was dealt, as it is far to the units.
         rows: rows of a frame.
         units: number of units.
     """
@@ -47,7 +48,12 @@ def row_dealer(clk, reset, new_frame, room, done, first_row, next_row, start, ro
         if deals:
             starts.next[turn] = True
 
-    start_row = assign((next_row, start), lambda: (deals, starts))
+    @always(clk.posedge)
+    def start_row():
+        next_row.next = deals and not reset
+        start.next = 0
+        if not reset:
+            start.next = starts
 
     @always(clk.posedge)
     def count():

@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, unsigned
+from raycaster.hdl.verbs import assign
 from raycaster.rtl.common.widths import column_bits
 
 
@@ -34,10 +35,7 @@ def shadow_scan(
     busy, tests, begun, covers, later = (bit() for _ in range(5))
     rest = unsigned(len(count))
 
-    @always_comb
-    def compare():
-        tests.next = busy and (rest != 0)
-        begun.next = tested.start <= column
+    compare = assign(begun, lambda: tested.start <= column)
 
     @always_comb
     def judge():
@@ -47,7 +45,7 @@ def shadow_scan(
     @always_comb
     def fetch():
         read.next = start or tests
-        done.next = busy and (rest == 0)
+        done.next = busy and not tests
 
     @always(clk.posedge)
     def advance():
@@ -57,9 +55,13 @@ def shadow_scan(
         elif read:
             busy.next = True
             place.next = (place + 1) % (1 << len(place))
-        if start:
+        if reset:
+            tests.next = False
+        elif start:
+            tests.next = count != 0
             rest.next = count
         elif tests:
+            tests.next = rest != 1
             rest.next = rest - 1
 
     @always(clk.posedge)

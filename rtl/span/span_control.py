@@ -7,7 +7,7 @@ from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, tied, unsigned
 from raycaster.hdl.verbs import assign, register
 from raycaster.rtl.common.widths import AXIS_BITS, MIRROR_BITS, column_bits, eye_bits, eye_distance_bits, weight_bits
-from raycaster.rtl.span.quarters_of import quarters_of
+from raycaster.rtl.engine.quarters_of import quarters_of
 from raycaster.rtl.span.records import Chain
 
 SpanState = enum("IDLE", "SET_UP", "SWEEP", "SPAN", "CORNER", "PAINT", "EMIT", "DESCEND", "ASCEND", "RETURN", "INHERIT")
@@ -44,8 +44,7 @@ def span_control(
         frame: `Frame` of the level below; read where that level goes on.
         painted: strobe; the level has been painted.
         emitted: strobe; the span's run has been taken.
-        begin_set_up: output strobe, at the latest in the cycle before the chain is valid: a cycle after start, so that
-            the way from start is short.
+        begin_set_up: output strobe, at the latest in the cycle before the chain is valid.
         begin_sweep: output strobe, in the cycle before the chain, its winner, its column and its count are valid.
         begin_corner: output strobe; apply the corner rule.
         begin_paint: output strobe; paint the columns from column up to stop.
@@ -70,7 +69,7 @@ def span_control(
     weight_width = weight_bits(config)
 
     state = Signal(SpanState.IDLE)
-    begins, entering, empty = bit(), bit(), bit()
+    entering, empty = bit(), bit()
     leaf, ending = (bit(), bit()) if mirrors else (tied(1, 1), tied(1, 1))
     first_chain = Chain(config)
     frame_chain = Chain(config) if mirrors else Chain(config).tie({})
@@ -100,7 +99,7 @@ def span_control(
 
     @always_comb
     def operate():
-        begin_set_up.next = begins or (state == SpanState.DESCEND)
+        begin_set_up.next = (start and state == SpanState.IDLE) or (state == SpanState.DESCEND)
         begin_sweep.next = (state == SpanState.INHERIT) or ((state == SpanState.SET_UP) and set_up_done)
         begin_corner.next = (state == SpanState.SPAN) and not leaf
         begin_paint.next = entering and (state == SpanState.PAINT)
@@ -137,8 +136,8 @@ def span_control(
         see_own = assign(own, lambda: 4 if leaf else 4 - mirrored)
 
         shares = (
-            quarters_of(weight=weight, quarters=own, share=share),
-            quarters_of(weight=weight, quarters=mirrored, share=passed),
+            quarters_of(whole=weight, quarters=own, share=share),
+            quarters_of(whole=weight, quarters=mirrored, share=passed),
         )
 
         @always(clk.posedge)
@@ -150,7 +149,6 @@ def span_control(
 
     @always(clk.posedge)
     def step():
-        begins.next = start and (state == SpanState.IDLE) and not reset
         entering.next = False
         if reset:
             state.next = SpanState.IDLE

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The cells of the patterns that rays see on their way."""
 
-from myhdl import Signal, always, always_comb, block, enum, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.hdl.signals import bit, signed, tied, unsigned
@@ -10,8 +10,6 @@ from raycaster.rtl.common.by_axis import along_u, along_v, by_axis
 from raycaster.rtl.common.widths import PLACE_BITS, column_bits, eye_bits, level_bits
 from raycaster.rtl.span.cell_walker import cell_walker
 from raycaster.rtl.span.records import Cells, Grid
-
-CellsState = enum("IDLE", "WALK")
 
 
 @block
@@ -49,8 +47,7 @@ def surface_cells(
     """
     width, far_bits, levels = column_bits(config), eye_bits(config), 1 << level_bits(config)
 
-    state = Signal(CellsState.IDLE)
-    idle, entering, painting, on_v, patterned, wants_v, needs_u, needs_v = (bit() for _ in range(8))
+    walking, entering, painting, on_v, patterned, wants_v, needs_u, needs_v = (bit() for _ in range(8))
     walked, rises, forward = bit(), bit(), bit()
     looked = unsigned(level_bits(config))
     grids, all_cells = ([unsigned(len(one(config).word)) for _ in range(levels)] for one in (Grid, Cells))
@@ -105,35 +102,32 @@ def surface_cells(
     # A checker has cells along u, and then along v.
     @always_comb
     def see_need():
-        idle.next = state == CellsState.IDLE
         patterned.next = paint and (kind != 0)
         wants_v.next = painting and walked and (not on_v) and (grid.kind == 1)
 
     @always_comb
     def see_step():
-        needs_u.next = step and idle and (cells.next_u == place)
-        needs_v.next = step and idle and (cells.next_u != place) and (cells.next_v == place)
+        needs_u.next = step and (not walking) and (cells.next_u == place)
+        needs_v.next = step and (not walking) and (cells.next_u != place) and (cells.next_v == place)
 
     @always_comb
     def see_end():
         painted.next = (paint and not patterned) or (painting and walked and not wants_v)
-        stepped.next = step and idle and not (needs_u or needs_v)
+        stepped.next = step and not (walking or needs_u or needs_v)
 
     @always(clk.posedge)
     def advance():
         entering.next = patterned or wants_v or needs_u or needs_v
         if reset:
-            state.next = CellsState.IDLE
-            painting.next = entering.next = False
+            walking.next = painting.next = entering.next = False
         elif patterned or needs_u or needs_v:
-            state.next = CellsState.WALK
+            walking.next = True
             painting.next = patterned
             on_v.next = needs_v or (patterned and (kind == 2))
         elif wants_v:
             on_v.next = True
         elif walked:
-            state.next = CellsState.IDLE
-            painting.next = False
+            walking.next = painting.next = False
 
     # Unless the first cell is sought, the walk begins with the next one, in the column in which it begins.
     see_here = assign(here, lambda: column if painting else place)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The light on the surfaces that rays see on their way."""
 
-from myhdl import Signal, always, always_comb, block, enum, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.hdl.signals import bit, tied, unsigned
@@ -11,8 +11,6 @@ from raycaster.rtl.common.widths import column_bits, count_bits, level_bits
 from raycaster.rtl.span.records import Shadows
 from raycaster.rtl.span.shadow_finder import shadow_finder
 from raycaster.rtl.span.shadow_scan import shadow_scan
-
-LightState = enum("IDLE", "FIND", "SCAN")
 
 
 @block
@@ -61,8 +59,7 @@ def surface_light(
     """
     width, levels = column_bits(config), 1 << level_bits(config)
 
-    state = Signal(LightState.IDLE)
-    entering, painting, needs, front, in_front, lit, unlit = (bit() for _ in range(7))
+    painting, needs, front, in_front, lit, unlit = (bit() for _ in range(6))
     found, scanned, now_dark = bit(), bit(), bit()
     back_a, find, scan = bit(), bit(), bit()
     light_a = unsigned(COORDINATE_BITS)
@@ -102,32 +99,22 @@ def surface_light(
     choose_here = assign(here, lambda: column if painting else place)
     look_up = assign(shadows.word, lambda: memory[looked])
 
-    @always_comb
-    def see_need():
-        needs.next = step and (state == LightState.IDLE) and (shadows.until == place)
-        find.next = entering and (state == LightState.FIND)
-        scan.next = entering and (state == LightState.SCAN)
+    see_need = assign(needs, lambda: step and (not busy) and (shadows.until == place))
 
     @always_comb
     def see_end():
         painted.next = (paint and not lit) or (painting and scanned)
-        stepped.next = step and (state == LightState.IDLE) and not needs
+        stepped.next = step and not (busy or needs)
 
     @always(clk.posedge)
     def advance():
-        entering.next = lit or found or needs
         if reset:
-            state.next = LightState.IDLE
-            busy.next = entering.next = painting.next = False
-        elif lit:
-            state.next = LightState.FIND
-            busy.next = painting.next = True
-        elif found or needs:
-            state.next = LightState.SCAN
-            busy.next = True
-        elif scanned:
-            state.next = LightState.IDLE
-            busy.next = painting.next = False
+            find.next = scan.next = busy.next = painting.next = False
+        else:
+            find.next = lit
+            scan.next = found or needs
+            busy.next = lit or needs or (busy and not scanned)
+            painting.next = lit or (painting and not scanned)
 
     finder = shadow_finder(
         clk=clk, reset=reset, start=find, chain=chain, winner=winner, camera=camera, column=column, stop=stop,

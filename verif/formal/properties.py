@@ -37,7 +37,7 @@ from raycaster.rtl.common.records import Camera, Rect, Surface, look_fields
 from raycaster.rtl.cull.rect_setup import SETUP_LATENCY
 from raycaster.rtl.engines import ENGINES, SEED, buffered_engine_of
 from raycaster.rtl.exact.eye_register import Mirror
-from raycaster.rtl.span.first_change import division_cycles, quotient_bits
+from raycaster.rtl.span.first_change import division_cycles, quotient_bits, stage_bits
 from raycaster.rtl.span.records import Entry
 from raycaster.verif.formal.alone import (
     Alone,
@@ -102,6 +102,7 @@ FACTS: dict[str, Callable[[Configuration], int]] = {
     "SETUP_LATENCY": lambda config: SETUP_LATENCY,
     "AIM_CYCLES": lambda config: AIM_CYCLES,
     "CYCLES": division_cycles,
+    "STAGE_BITS": stage_bits,
     "ADDRESS_BITS": lambda config: address_bits(*config.map),
     "VERSION_WORD": lambda config: register_map(*config.map)["version"].reset,
     "SLOPE_BITS": widths.exact_slope_bits,

@@ -12,8 +12,9 @@
 // claim = "the test gets the ray or its shadow ray, which gets the nearest hit, and a pixel its colour in this light"
 // modules = [
 //   "exact_unit", "exact_control", "ray_sequencer", "rect_sequencer", "shadow_sequencer", "rect_tester", "nearest_hit",
-//   "eye_register", "shadow_ray", "shadow_register", "ray_switch", "shade_colour", "turned_generator if TURN",
-//   "ray_generator if not TURN", "cell_finder if PATTERNS", "divider_step if PATTERNS", "pattern_colour if PATTERNS",
+//   "eye_register", "shadow_ray", "shadow_register", "ray_switch", "shade_colour", "quarters_of",
+//   "turned_generator if TURN", "ray_generator if not TURN", "cell_finder if PATTERNS", "divider_step if PATTERNS",
+//   "pattern_colour if PATTERNS",
 // ]
 // cut = ["turned_generator if TURN", "ray_generator if not TURN"]
 // any_product = true
@@ -127,9 +128,16 @@ always @* if (known && aimed) assert (unit.shadow_register_i.shaded == dark);
 // A pixel's light.
 wire light_on = camera[0], lit = unit.shadow_ray_i.facing && !dark;
 wire [23:0] own = unit.lit_colour_word;
-wire [9:0] red = camera[2:1] * own[23:16], green = camera[2:1] * own[15:8], blue = camera[2:1] * own[7:0];
+function [7:0] dim(input [7:0] channel);
+    reg [9:0] sum;
+    begin
+        sum = (camera[1] ? channel : 0) + (camera[2] ? 2 * channel : 0);
+        dim = sum[9:2];
+    end
+endfunction
+wire [23:0] dimmed = {dim(own[23:16]), dim(own[15:8]), dim(own[7:0])};
 always @* if (known && aimed) begin
-    assert (unit.colour_combiner_i.found_colour == (light_on && !lit ? {red[9:2], green[9:2], blue[9:2]} : own));
+    assert (unit.colour_combiner_i.found_colour == (light_on && !lit ? dimmed : own));
     assert (in_question == (light_on && lit && unit.nearest_hit_i.found && !unit.missed));
     if (!PATTERNS) assert (own == unit.nearest_hit_i.found_surface_word[23:0]);
 end

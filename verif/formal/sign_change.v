@@ -15,14 +15,17 @@
 // induction = 1
 // reach = "CYCLES + 4"
 // quick = ["span tiny rectangles=3"]
-// designs = ["span rows=180 scale=6 pixels=2 turn light patterns materials"]
+// designs = [
+//   "span rows=180 scale=6 pixels=2 turn patterns materials",
+//   "span rows=180 scale=6 pixels=2 turn light patterns materials",
+// ]
 // [faults]
 // "span-tiny48-s2-u2-r3-m1-l11520-c8" = ["first_change.y increased", "first_change.size increased",
 //   "divider_step.difference edge", "first_change.divisors_1 short", "first_change.remainders_3 short",
 //   "first_change.under_way short", "division_stage.kept_digits late", "first_change.first_digits short"]
 
 module sign_change;
-localparam G = DIVISOR_BITS - 1, Q = QUOTIENT_BITS, STAGES = CYCLES - 1;
+localparam G = DIVISOR_BITS - 1, Q = QUOTIENT_BITS, STAGES = CYCLES - 2;
 first_change dut (.*);
 
 reg picked;
@@ -46,26 +49,31 @@ always @(posedge clk) begin
     else age <= age + 1;
 end
 
-// Long division, two digits in a cycle, and one in the last if their number is odd.
+// Long division from the second cycle on, STAGE_BITS digits in a cycle, and one in the last if their number is odd.
 wire fits = y >> Q < g;
 reg [G-1:0] r;
 reg [Q-1:0] q, bits;
 wire [G:0] half = {r, bits[Q-1]}, half_rest = half >= g ? half - g : half;
 wire [G:0] whole = {half_rest[G-1:0], bits[Q-2]}, whole_rest = whole >= g ? whole - g : whole;
-wire single = Q % 2 && age == STAGES - 1;
+wire single = STAGE_BITS == 1 || (Q % 2 && age == STAGES);
 wire [G-1:0] next_r = single ? half_rest : whole_rest;
 wire [Q-1:0] next_q = single ? {q, half >= g} : {q, half >= g, whole >= g};
 wire [Q-1:0] next_bits = bits << (single ? 1 : 2);
 always @(posedge clk) begin
     if (start && pick) {r, q, bits} <= {first[LINE_BITS-1:Q], {Q{1'b0}}, first[Q-1:0]};
-    else if (age < STAGES) {r, q, bits} <= {next_r, next_q, next_bits};
+    else if (age > 0 && age <= STAGES) {r, q, bits} <= {next_r, next_q, next_bits};
 end
 
-// Invariants: the outputs of each stage.
+// Invariants: the line that is kept, and the outputs of each stage.
+always @* if (known && picked && age == 0) begin
+    assert ((dut.kept_value < 0 ? ~dut.kept_value : dut.kept_value) == y && bits == y[Q-1:0] && q == 0);
+    assert ((dut.kept_growth < 0 ? -dut.kept_growth : dut.kept_growth) == g && r == y >> Q);
+end
 genvar i;
 generate
-    for (i = 0; i < STAGES; i = i + 1) always @* if (known && picked && age == i) begin
-        assert (dut.division_stage{i}_i.next_divisor == g && bits == (y[Q-1:0] << 2 * i) && q >> 2 * i == 0);
+    for (i = 0; i < STAGES; i = i + 1) always @* if (known && picked && age == i + 1) begin
+        assert (bits == (y[Q-1:0] << STAGE_BITS * i) && q >> STAGE_BITS * i == 0);
+        assert (dut.division_stage{i}_i.next_divisor == g);
         if (fits) assert (dut.division_stage{i}_i.next_digits == (next_bits | next_q)
             && dut.division_stage{i}_i.next_remainder == next_r);
     end

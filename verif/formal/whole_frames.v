@@ -42,21 +42,23 @@ wire [7:0] place = dut.place;
 reg begins, drawing, waits, black;
 reg [1:0] whole;
 reg [7:0] rows_in, entries_in, dealt;
-reg [UNITS-1:0] at_work;
+reg [UNITS-1:0] at_work, starts;
+wire [UNITS-1:0] deals;
 wire completes = drawing && row_written && rows_in == ROWS - 1;
 wire takes_scene = start_screen && !drawing, hands_over = takes_scene && waits;
 wire [7:0] rows_taken = rows_in + row_written, entries_taken = entries_in + write;
 always @(posedge clk) begin
     if (reset) begin
-        {begins, drawing, at_work} <= 0;
+        {begins, drawing, at_work, starts} <= 0;
         whole <= 0;
         {waits, black} <= 2'b11;
     end
     else begin
         begins <= takes_scene;
         {rows_in, entries_in} <= new_frame ? 16'b0 : {rows_taken, entries_taken};
-        dealt <= new_frame ? 0 : dealt + (start != 0);
-        at_work <= abandoned ? 0 : at_work & ~done | start;
+        dealt <= new_frame ? 0 : dealt + (deals != 0);
+        at_work <= abandoned ? 0 : at_work & ~done | deals;
+        starts <= abandoned ? 0 : deals;
         if (begins) {drawing, waits, black} <= {run, !run, !run};
         else if (completes || abandoned) {drawing, waits} <= {1'b0, completes};
         else if (takes_scene) waits <= 0;
@@ -89,12 +91,14 @@ always @* if (known) begin
     assert (events_late == (start_screen && drawing));
 end
 
-// Rows are dealt in order, each to the unit whose turn it is and as soon as that is idle and has room.
+// Rows are dealt in order, each to the unit whose turn it is and as soon as that is idle and has room. A row starts in
+// the cycle after its deal.
 reg settling, settled;
 always @(posedge clk) {settling, settled} <= reset || new_frame || abandoned ? 0 : {first_row, settling || settled};
 wire [UNITS-1:0] idle = dut.row_dealer_i.room & (~at_work | done), in_turn = 1 << dealt % UNITS;
+assign deals = drawing && settled && dealt < ROWS ? idle & in_turn : 0;
 always @* if (known && !reset) begin
-    assert (start == (drawing && settled && dealt < ROWS ? idle & in_turn : 0) && next_row == (start != 0));
+    assert (dut.row_dealer_i.starts == deals && start == starts && next_row == (starts != 0));
     if ($past(known) && !$past(reset)) assert (first_row == ($past(new_frame) && !$past(abandoned)));
 end
 

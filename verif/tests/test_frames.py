@@ -10,7 +10,7 @@ import pytest
 from list_vectors import Collector, Dealer, Queue, row_of
 
 from raycaster.cli import scenes
-from raycaster.golden.frames import FIRST_START, frame_cycles
+from raycaster.golden.frames import FIRST_DEAL, frame_cycles
 from raycaster.golden.spans import Row
 from raycaster.scene import packaged_scenes
 
@@ -33,7 +33,7 @@ def simulated(rows: Sequence[Row], columns: int, units: int, places: int) -> int
         cycle += 1
         ages = [cycle - begin for begin, _ in drawn]
         done = {unit for unit, (_, row) in enumerate(drawn) if row.cycles and row.cycles == ages[unit]}
-        start = dealer.start([units == 1 or queue.room for queue in queues], done)
+        dealt = dealer.deal([units == 1 or queue.room for queue in queues], done)
         coming = [
             (row.runs[row.taken.index(age)][0], 0) if age in row.taken else None
             for (_, row), age in zip(drawn, ages, strict=True)
@@ -42,9 +42,10 @@ def simulated(rows: Sequence[Row], columns: int, units: int, places: int) -> int
         take, turn = collector.take(head), collector.turn
         for unit, queue in enumerate(queues):
             queue.clock(coming[unit], units > 1 and take and unit == turn, reset=False)
-        if start is not None:
-            drawn[start] = cycle, rows[dealer.row]
-        dealer.clock(cycle == 1, start, done, reset=False)
+        if dealer.started:
+            unit, row = dealer.started
+            drawn[unit] = cycle, rows[row]
+        dealer.clock(cycle == 1, dealt, done, reset=False)
         collector.clock(cycle == 1, head, reset=False)
     return cycle + 1
 
@@ -61,7 +62,7 @@ def test_frame_cycles(units, spare, random):
 
 def test_a_frame_of_one_unit_takes_the_time_of_its_rows(random):
     rows = [any_row(random, 9) for _ in range(12)]
-    assert frame_cycles(rows, 9) == FIRST_START + sum(row.cycles for row in rows)
+    assert frame_cycles(rows, 9) == FIRST_DEAL + sum(1 + row.cycles for row in rows)
 
 
 def test_the_scenes_of_a_small_design(monkeypatch, capsys):

@@ -141,7 +141,7 @@ class Drawing {
     const pixels = new Uint8Array(4 * columns * rows);
     for (const { runs } of parts) paint(new Uint32Array(pixels.buffer), runs, columns);
     RayCaster.plant?.(pixels, columns);
-    const clocks = parts.reduce((sum, part) => sum + part.clocks, this.design.first_start);
+    const clocks = parts.reduce((sum, part) => sum + part.clocks, this.design.first_deal);
     const runs = parts.reduce((sum, part) => sum + part.runs.length / 2, 0);
     return { pixels, words: parts[0].words, clocks, runs, milliseconds: Math.max(...parts.map((part) => part.milliseconds)) };
   }

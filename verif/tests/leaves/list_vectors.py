@@ -155,25 +155,29 @@ class Dealer:
     settles: bool = False
     dealing: bool = False
     busy: set[int] = field(default_factory=set)
+    started: tuple[int, int] | None = None
+    """The unit that starts in this cycle, and its row."""
 
-    def start(self, room: Sequence[bool], done: set[int]) -> int | None:
-        """Return the unit that takes the row `row` in this cycle."""
+    def deal(self, room: Sequence[bool], done: set[int]) -> int | None:
+        """Return the unit that is dealt the row `row` in this cycle."""
         unit = self.row % self.units
         free = unit not in self.busy or unit in done
         return unit if self.dealing and self.row < self.rows and room[unit] and free else None
 
-    def clock(self, new_frame: bool, start: int | None, done: set[int], reset: bool) -> None:
+    def clock(self, new_frame: bool, dealt: int | None, done: set[int], reset: bool) -> None:
         """End the cycle."""
         self.busy -= done
-        if start is not None:
-            self.busy.add(start)
+        self.started = None
+        if dealt is not None:
+            self.busy.add(dealt)
+            self.started = dealt, self.row
             self.row += 1
         if self.settles:
             self.row, self.dealing = 0, True
         self.settles, self.first_row = self.first_row, new_frame
         if reset:
             self.settles = self.first_row = self.dealing = False
-            self.busy = set()
+            self.busy, self.started = set(), None
 
 
 @dataclass

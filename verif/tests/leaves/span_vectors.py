@@ -259,10 +259,10 @@ class Frame:
     basis: Basis = UNTURNED
     light: Light | None = None
 
-    def rows(self, screen: Screen, varied: bool = False) -> Iterator[Row]:
-        """Yield the rows that a unit draws, by its model; varied as in `SpanModel`."""
+    def rows(self, screen: Screen, patterns: bool = False, lights: bool = False) -> Iterator[Row]:
+        """Yield the rows that a unit draws, by its model; patterns and lights as in `SpanModel`."""
         return SpanModel(
-            self.table, self.camera, self.background, screen.columns, self.reflections, self.light, varied
+            self.table, self.camera, self.background, screen.columns, self.reflections, self.light, patterns, lights
         ).rows(screen, self.basis)  # fmt: skip
 
     def picture(self, screen: Screen) -> np.ndarray:

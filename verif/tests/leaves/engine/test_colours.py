@@ -17,6 +17,7 @@ from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.colour_share import colour_share
 from raycaster.rtl.engine.colour_sum import colour_sum
 from raycaster.rtl.engine.pattern_colour import pattern_colour
+from raycaster.rtl.engine.quarters_of import QUARTERS_BITS, quarters_of
 from raycaster.rtl.engine.shade_colour import shade_colour
 from raycaster.scene import PATTERNS
 
@@ -30,6 +31,14 @@ def test_pattern_colour(leaf_of, random):
             look = {"kind": kind, "colour": colours[0], "colour_2": colours[1]}
             look |= {"mirror": random.integers(5), "cell": random.integers(8)}
             leaf.case({**named("look", look), "odd_u": odd_u, "odd_v": odd_v}, {"colour": colours[second]})
+    leaf.check()
+
+
+@by(width=[3, 8, 9])
+def test_quarters_of(width, leaf_of):
+    leaf = leaf_of(quarters_of, whole=width, quarters=QUARTERS_BITS, share=width)
+    for whole, quarters in product(range(1 << width), range(5)):
+        leaf.case({"whole": whole, "quarters": quarters}, {"share": whole * quarters // 4})
     leaf.check()
 
 

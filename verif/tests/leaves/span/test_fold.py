@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `fold`, `corner_finder`, `chain_stack`, `quarters_of`: the chain behind a mirror, and the way back."""
+"""Leaf tests of `fold`, `corner_finder` and `chain_stack`: the chain behind a mirror, and the way back."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from raycaster.golden.spans import ANSWER, Drawing, Entry, Line, Rect, SpanModel
 from raycaster.rtl.span.chain_stack import chain_stack
 from raycaster.rtl.span.corner_finder import corner_finder
 from raycaster.rtl.span.fold import fold
-from raycaster.rtl.span.quarters_of import quarters_of
 from raycaster.rtl.span.records import Frame
 
 
@@ -73,21 +72,20 @@ def test_corner_finder(leaf_of, random):
         }
         winner = {"axis": axis, "back": int(random.integers(2)), "distance": int(random.integers(1, 900))}
         held = named("chain", fields | {"mirrored": mirrored}) | by_axis("chain_met_", met) | named("winner", winner)
-        leaf.case(
-            held | {"reset": 0, "start": 1, "column": column, "stop": stop}, {"needed": needed, "asks_ask": needed}
-        )
+        leaf.case(held | {"reset": 0, "start": 1, "column": column, "stop": stop}, {"needed": needed, "asks_ask": 0})
         asked = {"left": column, "right": stop - 1, "strict": 0, "half_line": 0}
         asked |= {f"{name}_1": fields[name] for name in ("axis", "back")} | {"factor_1": winner["distance"]}
         asked |= {f"{name}_2": winner[name] for name in ("axis", "back")} | {"factor_2": fields["distance"]}
-        leaf.expect(named("asks_query", asked), when=needed)
         part, corner = stop, 0
-        leaf.case({"start": 0}, {"asks_ask": 0, "done": 0})
+        leaf.case({"start": 0}, {"asks_ask": needed, "done": 0})
+        leaf.expect(named("asks_query", asked), when=needed)
         if needed:
             if random.random() < 0.1:
                 leaf.case({"reset": 1})
                 leaf.case({"reset": 0, "answer_valid": 1}, {"done": 0})
                 leaf.case({"answer_valid": 0}, {"done": 0})
                 continue
+            leaf.case({}, {"asks_ask": 0})
             leaf.stimulus += [{}] * (ANSWER - 2)
             leaf.case({"answer_valid": 1, "answer_left": ends[0], "answer_right": ends[1]}, {"done": 1})
             leaf.case({"answer_valid": 0})
@@ -114,14 +112,4 @@ def test_chain_stack(reflections, leaf_of, random):
             stack.append(frame)
         elif stack:
             stack.pop()
-    leaf.check()
-
-
-@by(width=[3, 9])
-def test_quarters_of(width, leaf_of):
-    leaf = leaf_of(quarters_of, weight=width, quarters=3, share=width)
-    for weight in range((1 << width - 1) + 1):
-        for quarters in range(5):
-            if weight * quarters % 4 == 0:
-                leaf.case({"weight": weight, "quarters": quarters}, {"share": weight * quarters // 4})
     leaf.check()

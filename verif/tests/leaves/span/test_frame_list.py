@@ -32,6 +32,11 @@ from raycaster.rtl.span.row_dealer import row_dealer
 from raycaster.sim.register_model import Switch
 
 
+def started_row(dealer: Dealer) -> dict[str, int]:
+    """Return the outputs of a dealer that start a row."""
+    return {"next_row": int(dealer.started is not None), "start": 1 << dealer.started[0] if dealer.started else 0}
+
+
 @by(rows=[1, 13], units=[1, 2, 3, 5])
 def test_row_dealer(rows, units, leaf_of, random):
     """Units that are busy, idle or without room for any time; frames that are dropped in the middle."""
@@ -43,16 +48,16 @@ def test_row_dealer(rows, units, leaf_of, random):
         reset = int(random.random() < 0.01)
         idle = model.row == rows or not (model.dealing or model.settles or model.first_row)
         new_frame = int(idle and not model.busy and random.random() < 0.3)
-        done = {unit for unit in model.busy if random.random() < 0.3}
+        started = {unit for unit, _ in [model.started or (-1, 0)]}
+        done = {unit for unit in model.busy - started if random.random() < 0.3}
         room = [random.random() < 0.8 for _ in range(units)]
-        start = model.start(room, done)
+        dealt = model.deal(room, done)
         inputs = {"room": sum(flag << unit for unit, flag in enumerate(room)), "done": sum(1 << unit for unit in done)}
         leaf.case({"reset": reset, "new_frame": new_frame, **inputs})
-        started = 0 if start is None else 1 << start
-        leaf.expect({"first_row": model.first_row, "next_row": start is not None, "start": started})
-        at_once += start in done
-        model.clock(bool(new_frame), start, done, bool(reset))
-        finished += start is not None and model.row == rows
+        leaf.expect({"first_row": model.first_row, **started_row(model)})
+        at_once += dealt in done
+        model.clock(bool(new_frame), dealt, done, bool(reset))
+        finished += dealt is not None and model.row == rows
     leaf.check(settled=1)
     assert finished > 20
     assert at_once > 20 or rows == 1 or units > 2
@@ -161,7 +166,7 @@ def test_frame_list(units, pixels, doubling, clocks, queue, pace, leaf_of, rando
         offered = [drawer.runs[0] if drawer.offers else None for drawer in drawers]
         head = offered[0] if units == 1 else queues[collector.turn].head
         take, full = collector.take(head), collector.full(head)
-        start = dealer.start([one.room or units == 1 for one in queues], done)
+        dealt = dealer.deal([one.room or units == 1 for one in queues], done)
         new_frame, take_scene = switch.state == "begin" and run, switch.state == "wait" and start_screen
         whole = collector.written is not None and collector.written[2]
         ready = [take] if units == 1 else [one.ready for one in queues]
@@ -172,8 +177,7 @@ def test_frame_list(units, pixels, doubling, clocks, queue, pace, leaf_of, rando
         if not reset:
             events = switch.events(start_screen, whole, full, cycle)
             leaf.expect({"take_scene": take_scene, "stop": stops, **named("events", events)})
-            started = 0 if start is None else 1 << start
-            leaf.expect({"first_row": dealer.first_row, "next_row": start is not None, "start": started})
+            leaf.expect({"first_row": dealer.first_row, **started_row(dealer)})
             leaf.expect({"ready": sum(flag << number for number, flag in enumerate(ready))}, when=units > 1)
             leaf.expect({"ready": take}, when=units == 1)
             seen.update(name for name, value in events.items() if value and name != "time")
@@ -189,8 +193,9 @@ def test_frame_list(units, pixels, doubling, clocks, queue, pace, leaf_of, rando
             taken = offered[number] is not None and ready[number]
             assert ready[number] or units == 1 or not drawer.runs  # with room for a row, a unit never waits
             queues[number].clock(offered[number], bool(number == collector.turn and take and units > 1), cleared)
-            drawer.clock(taken, frame[dealer.row] if start == number else None, cleared)
-        dealer.clock(bool(new_frame), start, done, dropped)
+            starts = dealer.started is not None and dealer.started[0] == number
+            drawer.clock(taken, frame[dealer.started[1]] if starts else None, cleared)
+        dealer.clock(bool(new_frame), dealt, done, dropped)
         collector.clock(bool(new_frame), head, dropped)
         if new_frame:
             frame = any_frame(random, COLUMNS, ROWS, ENTRIES)

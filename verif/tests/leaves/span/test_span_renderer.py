@@ -9,7 +9,7 @@ import numpy as np
 from engine_vectors import TINY_SCREEN, check_frames, scene_in_view, scene_inputs, small_config, start_cycle
 from vectors import designs
 
-from raycaster.golden.frames import FIRST_START, frame_cycles, runs_of
+from raycaster.golden.frames import FIRST_DEAL, frame_cycles, runs_of
 from raycaster.golden.spans import Row, SpanModel
 from raycaster.rtl.span.span_renderer import span_renderer
 from raycaster.screens import Screen, Span
@@ -43,7 +43,7 @@ def test_span_renderer(config, leaf_of, random):
     screen, columns, units = config.screen_geometry, config.screen_geometry.columns, config.units
     leaf = leaf_of(span_renderer, config)
     leaf.stimulus += [{"reset": 1, "picture_run": 0}] * 2
-    first = FIRST_START + (config.rectangles if units > 1 else 0)
+    first = FIRST_DEAL + (config.rectangles if units > 1 else 0)
     black = np.zeros((screen.rows, columns), dtype=int)
     drawn, shown, whole, whole_at, black_now = black, black, True, -1, True
     pictures, strobes, held, seen = [], defaultdict(set), {"reset": 0}, Counter()

@@ -55,7 +55,7 @@ def busy_frames(
 def unit_bench(leaf_of, config: Configuration):
     """Make the bench of a unit, with what its model must know of the design."""
     leaf = leaf_of(frame_bench, config)
-    leaf.screen, leaf.varied = config.screen_geometry, config.varied
+    leaf.screen, leaf.has = config.screen_geometry, {"patterns": config.patterns, "lights": config.light}
     return leaf
 
 
@@ -73,7 +73,7 @@ def drawn(
     """
     screen = leaf.screen
     count = most or screen.rows
-    expected = [list(islice(frame.rows(screen, leaf.varied), count)) for frame in frames]
+    expected = [list(islice(frame.rows(screen, **leaf.has), count)) for frame in frames]
     begins, stimulus = [], [{"reset": 1, "first_row": 0, "store": 0, "run_ready": 1}] * 3
     for frame, rows, cut in zip_longest(frames, expected, cuts):
         if cut is not None:
@@ -201,7 +201,7 @@ def test_a_reset_ends_a_row(leaf_of, random):
         """Yield frames whose first row takes so many cycles and steps of these kinds, and these cycles."""
         while True:
             frame = any_frame(random, config)
-            row = next(frame.rows(leaf.screen, leaf.varied))
+            row = next(frame.rows(leaf.screen, **leaf.has))
             if least <= row.cycles <= most and all(row.steps[kind] for kind in kinds):
                 yield frame, row.cycles
 
@@ -240,7 +240,7 @@ FAULTS = [
     ("corner_finder", "at_left = answer_left == 0", "at_left = 0"),
     ("corner_finder", "at_right = answer_right == 0", "at_right = 0"),
     ("fold", "towards = winner_back != back_a", "towards = winner_back"),
-    ("first_change", "y = {~division_value", "y = {-division_value"),
+    ("first_change", "y = {~kept_value", "y = {-kept_value"),
     ("cell_walker", "up = above_right >= 0", "up = above_right > 0"),
     ("cell_walker", "? (above_left >= 0)", "? 0"),
     ("surface_cells", "wants_v = painting", "wants_v = 0 && painting"),

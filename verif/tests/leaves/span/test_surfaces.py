@@ -77,7 +77,7 @@ def test_surface_cells(reflections, leaf_of, random):
             u = along[place]
             edge = combined(distance, folded(slope, u, backs[u]), -eye[u], ahead)
             cells[place] = Cells((edge, combined(8 << size, ahead, 0, ahead)))
-            drawing.now += ANSWER + 2 + drawing.division
+            drawing.now += ANSWER + 3 + drawing.division
             cells[place].cell = edge.at(start) // ((8 << size) * ahead.at(start))
             drawing.follow(cells[place], start, stop)
         leaf.expect({"painted": int(not cells)})
