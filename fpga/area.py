@@ -149,7 +149,11 @@ def route(config: Configuration, seed: int, directory: Path, console: Console) -
     sources = [Path(path.name) for path in write_verilog(config, directory) if path.suffix == ".v"]
     netlist = write_netlist(flow, sources, TOP, board.multipliers, directory)
     aim = round(config.screen_geometry.clock_hz / 1e6 * SPARE, 2)
-    command = [flow.programs[0], *board.options, "--json", netlist.name, "--lpf-allow-unconstrained", *ECP5_EFFORT]
+    # nextpnr finds no way to a clock buffer from some pads.
+    [pin] = board.bits(board.clock).values()
+    (directory / "clock.lpf").write_text(f'LOCATE COMP "{SYSTEM_CLOCK}" SITE "{pin}";\n')
+    pads = ["--lpf", "clock.lpf", "--lpf-allow-unconstrained"]
+    command = [flow.programs[0], *board.options, "--json", netlist.name, *pads, *ECP5_EFFORT]
     done = place_and_route([*command, "--freq", str(aim), "--seed", str(seed)], flow.again, directory)
     if done.returncode:
         raise UserError(f"{done.args[0]}: it failed; the log is {directory / 'nextpnr.log'}")

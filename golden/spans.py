@@ -218,7 +218,7 @@ class SpanModel:
     """The design has patterns."""
 
     lights: bool = False
-    """The design has a light: its divisions take a bit per cycle."""
+    """The design has a light: rays pass a register before each set-up, and its divisions take a bit per cycle."""
 
     @property
     def varied(self) -> bool:
@@ -492,7 +492,7 @@ class Drawing:
         """
         entries = []
         # The slope's components are asked for, one per cycle; a chain's in the first cycle in which it is there.
-        hand = self.now + 3 + ANSWER + (1 if rays else 0)
+        hand = self.now + 3 + ANSWER + self.model.lights + (1 if rays else 0)
         accepted, issued = hand, 0
         for rect in self.model.table:
             lines = self.half_lines(chain, rect, rays, ahead)

@@ -134,11 +134,17 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
             given.word.next, painted.next = plain, begin_paint
             seen_share.next, seen_colour.next = surface.share, surface.colour
 
-    # The shadows on a surface are found like the entries of a chain.
+    # The shadows on a surface are found like the entries of a chain. It is far from both to the set-up.
     if config.light:
-        choose_rays = assign(rays.word, lambda: fan.word if shading else chain.word)
+
+        @always(clk.posedge)
+        def choose_rays():
+            start_set_up.next = (begin_set_up or begin_fan) and not reset
+            rays.word.next = chain.word
+            if shading:
+                rays.word.next = fan.word
+
         choose_table_level = assign(table_level, lambda: shaded_level if shading else level)
-        choose_start_set_up = assign(start_set_up, lambda: begin_set_up or begin_fan)
         choose_read = assign(read, lambda: read_entry or read_shadow)
         choose_place = assign(place, lambda: shadow_place if read_shadow else entry_place)
 

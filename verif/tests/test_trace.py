@@ -195,7 +195,7 @@ def test_viewers_show_what_there_is(sound):
     assert len(set(labels)) == len(labels), "two signals have one label"
 
     [units] = re.findall(r"^\*-\d+\.\d+ (\d+) ", gtkwave, re.MULTILINE)
-    expected = {"left": config.screen_geometry.rows - ray.row, "next_row": 1}
+    expected = {"left": config.screen_geometry.rows - ray.row - 1, "next_row": 1}
     if not config.facts.whole_frames:
         expected = {"place_row": ray.row, "place_column_offset": ray.offset, "steps_screen_to_ray": 1}
     signals = [description.signals(name)[0] for name in expected]
@@ -289,7 +289,7 @@ FAULTS = {
         ("ray_switch", "$signed({1'b0, camera_light_y})", "eye_y"),
         ("shadow_register", "reached < denominator", "reached > denominator"),
         ("exact_unit", "dark = camera_light_on", "dark = 0 && camera_light_on"),
-        ("shade_colour", "red = shade * colour_red", "red = 3 * colour_red"),
+        ("shade_colour", "dark ? shade : 4", "dark ? 3 : 4"),
         ("colour_share", "(weight >>> 1)", "weight"),
     ],
     "span-turn": [
@@ -305,7 +305,7 @@ FAULTS = {
         ("surface_light", "(light_a < rect_position)", "(light_a >= rect_position)"),
         ("shadow_finder", "offset = light_q - eye_q", "offset = light_q + eye_q"),
         ("shadow_scan", "covers = begun", "covers = 0 && begun"),
-        ("shade_colour", "red = shade * colour_red", "red = 3 * colour_red"),
+        ("shade_colour", "dark ? shade : 4", "dark ? 3 : 4"),
     ],
     "span-pairs-shared": [
         ("rect_table", "walk_rect_word <= words[walk_index]", "walk_rect_word <= words[0]"),

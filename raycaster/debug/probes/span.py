@@ -334,10 +334,10 @@ class SpanProbes(Description):
         series = {key: samples.values[name] for key, name in self.names.items()}
         viewed = next((cycle for cycle in cycles if series["player.view_run"][cycle]), len(cycles))
         rows_left = ray.config.screen_geometry.rows - ray.row
-        deals = zip(series["dealer.next_row"], series["dealer.left"], strict=True)
-        start = next((cycle for cycle, deal in enumerate(deals) if deal == (1, rows_left)), viewed)
-        # A chain is there from the cycle after the strobe on.
-        events, counts, begin = [Event("start", start, Place(0))] if start < viewed else [], Counter[Any](), 0
+        starts = zip(series["dealer.next_row"], series["dealer.left"], strict=True)
+        start = next((cycle for cycle, one in enumerate(starts) if one == (1, rows_left - 1)), viewed)
+        # A chain is there from the cycle after the strobe on, the first one from the cycle after the row's start.
+        events, counts, begin = [Event("start", start, Place(0))] if start < viewed else [], Counter[Any](chains=1), 0
         for cycle in cycles[start + 1 : viewed]:
             now = {key: values[cycle] or 0 for key, values in series.items()}
             events += self._steps(now, cycle, sight, counts)
