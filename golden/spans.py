@@ -618,7 +618,7 @@ class Drawing:
             return left
         if line.at(right) >= 0:
             self.result.steps["divisions"] += 1
-            self.now += self.division + 1
+            self.now += self.division + 2
             return left + first_change(line.at(left), line.growth)
         return follows
 

@@ -49,7 +49,7 @@ def sweep(
     width, factor_bits = column_bits(config), line_factor_bits(config)
 
     state = Signal(SweepState.IDLE)
-    begins, held, asks_rival, crossed = (bit() for _ in range(4))
+    begins, held, asks_rival, divided, crossed = (bit() for _ in range(5))
     rest, left_over = unsigned(len(count)), unsigned(len(count))
     # The entry that is compared with stop, and how it compares with the winner.
     present = Entry(config)
@@ -58,7 +58,7 @@ def sweep(
     tested_rank, winner_rank, present_rank, heir_rank = (
         unsigned(len(winner.distance) + len(winner.index)) for _ in range(4)
     )
-    in_time_1, meets_1, nearer_1, same_1, outlasts_1 = (bit() for _ in range(5))
+    in_time_1, meets_1, nearer_1, same_1, outlasts_1, soon_1 = (bit() for _ in range(6))
     judging, soon, soon_after, sooner, found, here, ordered, changes, crosses = (bit() for _ in range(9))
     take, settled, advance, rivalled, earlier, nearer_heir, same_heir, follows = (bit() for _ in range(8))
     rival = Entry(config)
@@ -94,6 +94,9 @@ def sweep(
     find_limit = assign(limit, lambda: first_stop if begins else stop)
     see_time = assign(in_time, lambda: opens and (tested.start <= limit))
 
+    # left < limit, without a wait for left.
+    see_soon = assign(soon, lambda: (tested.start < limit) and (column < limit))
+
     count_down = assign(left_over, lambda: count if begins else rest)
 
     @always(clk.posedge)
@@ -108,20 +111,18 @@ def sweep(
                 rest.next = left_over - 1
             present.word.next = tested.word
             left_1.next, in_time_1.next, meets_1.next = left, in_time, meets
-            nearer_1.next, same_1.next, outlasts_1.next = nearer, same, outlasts
+            nearer_1.next, same_1.next, outlasts_1.next, soon_1.next = nearer, same, outlasts, soon
 
     # Where the entry would come first: where both are met, or after a division at the crossing.
     find_place = assign(at, lambda: crossing if state == SweepState.CROSS else left_1)
 
     @always_comb
-    def see_soon():
+    def see_judging():
         judging.next = (state == SweepState.SCAN) and held
-        soon.next = left_1 < stop
-        soon_after.next = crossing < stop
         follows.next = outlasts_1 and not shortened
 
-    # Both places are compared before the state chooses one, as the comparison is the slowest path.
-    choose_sooner = assign(sooner, lambda: soon_after if state == SweepState.CROSS else soon)
+    # While an entry is compared, stop does not change; so both places are compared with it before.
+    choose_sooner = assign(sooner, lambda: soon_after if state == SweepState.CROSS else soon_1)
 
     @always_comb
     def compare_heir():
@@ -130,8 +131,11 @@ def sweep(
 
     @always(clk.posedge)
     def see_crossing():
-        crossed.next = answer.divided
-        crossing.next = (left_1 + answer.columns) % (1 << width)
+        divided.next = answer.divided and not reset
+        crossed.next = divided and not reset
+        soon_after.next = crossing < stop
+        if answer.divided:
+            crossing.next = (left_1 + answer.columns) % (1 << width)
 
     # The column at which the entry would follow, if it does: here, at left_1, after a division, or at stop.
     @always_comb

@@ -168,7 +168,7 @@ always @* if (known) begin
     assert (dut.state <= 5 && runs == (dut.state != 0) && (runs || place == 0));
     assert (!dut.begins || (scan && !dut.held));
     assert ((runs || !dut.held) && (asked || dut.asks_rival) == (order || rivals) && !(asked && dut.asks_rival));
-    assert (cross ? divides != dut.crossed : !divides);
+    assert (2'd0 + divides + dut.divided + dut.crossed == cross);
     assert (!order || asked);
     if (runs) assert (place == tested + 2'd1 && (tested == 3 || tested_word == tested_entry));
     if (dut.begins) assert (tested == 0);
@@ -178,6 +178,7 @@ always @* if (known) begin
         if (dut.held && !next) begin
             assert (present == passed && tested == passed + 2'd1 && dut.present_word == present_entry);
             assert (dut.left_1 == first_now && dut.same_1 == (axis_now == winner_axis));
+            assert (dut.soon_1 == (first_now < stop));
             assert (dut.in_time_1 == (start_now <= stop && (gap ? start_now >= column
                 : present != seen && end_now > column)));
             if (!gap) begin
@@ -202,6 +203,7 @@ always @* if (known) begin
         assert (right == (end_now - 1'b1 < dut.bound ? end_now - 1'b1 : dut.bound) && axis_now != winner_axis);
     end
     if (cross) assert (!above_left && above_right && (divides || dut.crossing == change[C-1:0]));
+    if (dut.crossed) assert (dut.soon_after == (change[C-1:0] < stop));
     if (rivals) begin
         assert (dut.held && inherited && (!asked || (rival == heir_number && left == stop && right == stop)));
         assert (met_stop[present] && (gap || present != seen) && axis_now != heir_entry[E-3 -: 2]);
