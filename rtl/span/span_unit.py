@@ -146,7 +146,7 @@ def span_unit(clk, reset, start, slope, rects, camera, picture, run, done, confi
 
         choose_table_level = assign(table_level, lambda: shaded_level if shading else level)
         choose_read = assign(read, lambda: read_entry or read_shadow)
-        choose_place = assign(place, lambda: shadow_place if read_shadow else entry_place)
+        choose_place = assign(place, lambda: shadow_place if shading else entry_place)
 
     control = span_control(
         clk=clk, reset=reset, start=start, camera=camera, picture=picture, rect=rects.rect, set_up_done=set_up_done,
