@@ -99,7 +99,7 @@ module frame_list (
     input  wire                   reset,
     input  wire                   run,
     output wire                   take_scene,
-    output wire                   stop,
+    output reg                    stop,
     output reg                    first_row,
     output reg                    next_row,
     output reg                    start,
@@ -133,12 +133,12 @@ wire working = deals || (drawing && !done);
 assign take_scene = scan_start_screen;
 assign ready = 1'b1;
 assign busy = new_frame || first_row || settles || rows_left || drawing;
-assign stop = 1'b0;
 assign shown = 0;
 assign {events_drawn, events_shown, events_again, events_late, events_list_full} = 0;
 assign events_time = 0;
 
 always @(posedge clk) begin
+    stop <= reset;
     if (reset) begin
         new_frame <= 1'b0;
         first_row <= 1'b0;

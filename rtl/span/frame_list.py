@@ -30,7 +30,8 @@ def frame_list(
         run: flag of the live `Picture`; read in the cycle after take_scene.
         hold: flag; no row is dealt, as the units are not ready for this frame. Only with more than one unit.
         take_scene: output strobe; the pending scene goes live.
-        stop: output flag; the units must be reset, as their frame was abandoned in the cycle before.
+        stop: output flag; the units must be reset, as the design was reset or their frame was abandoned in the cycle
+            before.
         first_row: output strobe, as in `row_slope`; in the second cycle after take_scene.
         next_row: output strobe, as in `row_slope`.
         start: unsigned output, a bit for each unit; strobe, the unit draws the present row.
@@ -76,7 +77,7 @@ def frame_list(
     )  # fmt: skip
 
     drop = assign(dropped, lambda: reset or abandoned)
-    stop_units = register(clk, stop, lambda: abandoned and not reset)
+    stop_units = register(clk, stop, lambda: dropped)
 
     if units == 1:
 
@@ -90,19 +91,17 @@ def frame_list(
         heads = [ListEntry(columns, pixel_bits) for _ in range(units)]
         head_words = [one.word for one in heads]
         waits, rooms, readies = ([bit() for _ in range(units)] for _ in range(3))
-        takes, emptied = unsigned(units), bit()
+        takes = unsigned(units)
         waiting = side_by_side(waits)
         all_room, all_ready = side_by_side(rooms), side_by_side(readies)
+        # The units go on for a cycle, so their queues are emptied when they are reset.
         queues = [
             run_queue(
-                clk, reset=emptied, valid=valid(i), run=queued[i], take=takes(i), ready=readies[i], room=rooms[i],
+                clk, reset=stop, valid=valid(i), run=queued[i], take=takes(i), ready=readies[i], room=rooms[i],
                 offered=waits[i], head=heads[i], columns=columns, places=queue,
             )
             for i in range(units)
         ]  # fmt: skip
-
-        # The units go on for a cycle, so their queues are emptied when they are reset.
-        empty = assign(emptied, lambda: reset or stop)
 
         @always_comb
         def collect():

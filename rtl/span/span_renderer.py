@@ -40,7 +40,7 @@ def span_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
 
     scan, shown = Scan(start_screen=progress.start_screen), Pixel(config.port_bits)
     slope = Vector(signed_slope_bits(config))
-    reset_units, stop, first_row, next_row = (bit() for _ in range(4))
+    stop, first_row, next_row = (bit() for _ in range(3))
     start, ready = unsigned(units), unsigned(units)
     dones = [bit() for _ in range(units)]
     runs = [Run(config) for _ in range(units)]
@@ -79,7 +79,7 @@ def span_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
         ]  # fmt: skip
     drawers = [
         span_unit(
-            clk=clk, reset=reset_units, start=start(i), slope=slope, rects=walks[i], camera=view, picture=seen,
+            clk=clk, reset=stop, start=start(i), slope=slope, rects=walks[i], camera=view, picture=seen,
             run=runs[i], done=dones[i], config=config,
         )
         for i in range(units)
@@ -104,7 +104,5 @@ def span_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
         )  # fmt: skip
 
         show = assign(shown.word, lambda: pair)
-
-    join_resets = assign(reset_units, lambda: reset or stop)
 
     return instances()

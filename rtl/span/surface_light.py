@@ -65,7 +65,7 @@ def surface_light(
     light_a = unsigned(COORDINATE_BITS)
     here, next_dark = unsigned(width), unsigned(width)
     memory = [unsigned(len(Shadows(config).word)) for _ in range(levels)]
-    fresh, shadows, with_count, follow = (Shadows(config) for _ in range(4))
+    fresh, shadows, with_count, follow, shown = (Shadows(config) for _ in range(5))
     no_shadows = tied(0, count_bits(config))
 
     choices = (
@@ -98,8 +98,9 @@ def surface_light(
     choose_looked = assign(looked, lambda: level if painting else seen)
     choose_here = assign(here, lambda: column if painting else place)
     look_up = assign(shadows.word, lambda: memory[looked])
+    show = assign(shown.word, lambda: memory[seen])
 
-    see_need = assign(needs, lambda: step and (not busy) and (shadows.until == place))
+    see_need = assign(needs, lambda: step and (not busy) and (shown.until == place))
 
     @always_comb
     def see_end():
@@ -126,6 +127,6 @@ def surface_light(
         read=read, place=read_place, dark=now_dark, next_dark=next_dark, done=scanned, config=config,
     )  # fmt: skip
 
-    show = assign((dark, next_column), lambda: (shadows.dark, shadows.until))
+    show_light = assign((dark, next_column), lambda: (shown.dark, shown.until))
 
     return instances()

@@ -85,7 +85,7 @@ end
 always @* if (known) begin
     assert (take_scene == takes_scene && new_frame == (begins && run));
     if (abandoned) assert (drawing && dut.offered && entries_taken == ENTRIES && rows_taken < ROWS);
-    if ($past(known)) assert (stop == ($past(abandoned) && !$past(reset)));
+    if ($past(known)) assert (stop == ($past(abandoned) || $past(reset)));
     assert (events_drawn == completes && events_list_full == abandoned);
     assert (events_shown == (hands_over && !black) && events_again == (start_screen && !hands_over));
     assert (events_late == (start_screen && drawing));

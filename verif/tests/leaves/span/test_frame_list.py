@@ -155,8 +155,9 @@ def test_frame_list(units, pixels, doubling, clocks, queue, pace, leaf_of, rando
     collector = Collector(COLUMNS, ROWS, units, ENTRIES)
     queues = [Queue(COLUMNS, queue) for _ in range(units)]
     drawers = [Unit(random) for _ in range(units)]
-    frame, run, seen, stops = [], 0, Counter(), False
-    leaf.case({"reset": 1})
+    frame, run, seen, stops = [], 0, Counter(), True
+    for _ in range(2):
+        leaf.case({"reset": 1})
     for _ in range(leaf.some(40) * beam.period):
         cycle = leaf.cycle
         reset = random.random() < 0.1 / beam.period
@@ -188,13 +189,13 @@ def test_frame_list(units, pixels, doubling, clocks, queue, pace, leaf_of, rando
                 picture = [0] * COLUMNS if switch.shown is None else pixels_of(switch.shown[row])
                 leaf.expected[cycle + 1]["shown"] = side_by_side(picture[column : column + pixels], PIXEL_BITS)
                 seen["pictures"] += switch.shown is not None and beam.place == (0, 0)
-        dropped, cleared = bool(reset or full), bool(reset or stops)
+        dropped = bool(reset or full)
         for number, drawer in enumerate(drawers):
             taken = offered[number] is not None and ready[number]
             assert ready[number] or units == 1 or not drawer.runs  # with room for a row, a unit never waits
-            queues[number].clock(offered[number], bool(number == collector.turn and take and units > 1), cleared)
+            queues[number].clock(offered[number], bool(number == collector.turn and take and units > 1), stops)
             starts = dealer.started is not None and dealer.started[0] == number
-            drawer.clock(taken, frame[dealer.started[1]] if starts else None, cleared)
+            drawer.clock(taken, frame[dealer.started[1]] if starts else None, stops)
         dealer.clock(bool(new_frame), dealt, done, dropped)
         collector.clock(bool(new_frame), head, dropped)
         if new_frame:
@@ -207,11 +208,11 @@ def test_frame_list(units, pixels, doubling, clocks, queue, pace, leaf_of, rando
         if take_scene:
             run = int(random.random() < 0.9)
         beam.clock(reset)
-        stops = bool(full and not reset)
+        stops = dropped
         if reset:
             switch.reset()
             leaf.expected.pop(cycle + 1, None)
     leaf.expected.pop(leaf.cycle, None)
-    leaf.check(settled=1)
+    leaf.check(settled=2)
     wanted = {"quick": {"drawn", "shown"}, "late": {"late", "again"}, "mixed": {"list_full", "exactly full"}}[pace]
     assert all(seen[name] > 0 for name in {*wanted, "pictures"}), seen
